@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+namespace sac {
+
+using Vec3f = std::array<float, 3>;
+using Triangle = std::array<std::uint32_t, 3>;
+
+// One frame's vertex positions, in model units.
+using Positions = std::vector<Vec3f>;
+
+// An indexed triangle mesh with the static attributes of a clip's first frame. Any list of triangles is a mesh: several
+// components, boundaries, non-manifold edges, isolated vertices and degenerate or duplicate triangles are all allowed.
+struct Mesh {
+  Positions positions;
+  std::vector<Triangle> triangles;  // vertex indices
+
+  // Texture coordinates belong to corners: uv_triangles[j][k] indexes uvs for corner k of triangle j.
+  // Both are empty when there are none.
+  std::vector<std::array<float, 2>> uvs;
+  std::vector<Triangle> uv_triangles;
+
+  // Per vertex; empty when there are none.
+  std::vector<Vec3f> normals;
+  std::vector<std::array<std::uint8_t, 4>> colors;  // RGBA
+};
+
+}  // namespace sac
