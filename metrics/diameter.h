@@ -1,0 +1,12 @@
+#pragma once
+
+#include "codec/mesh.h"
+
+namespace sac {
+
+// The largest distance between two of the points, 0 for fewer than two. Exact up to the rounding of one distance.
+// NaN if a coordinate is not finite. O(n) for most shapes, about O(n log n) for spheres and other shapes with very many
+// almost farthest pairs.
+double Diameter(const Positions& points);
+
+}  // namespace sac
