@@ -1,0 +1,22 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/mesh.h"
+
+namespace sac {
+
+// A connected component: the vertices [first, first + count).
+struct Component {
+  std::uint32_t first;
+  std::uint32_t count;
+};
+
+// Labels each of `vertices` vertices with its connected component over the edges of `triangles`, degenerate ones
+// included. Components are numbered by their smallest vertex.
+std::vector<std::uint32_t> LabelComponents(std::uint32_t vertices, std::span<const Triangle> triangles,
+                                           std::uint32_t& components);
+
+}  // namespace sac

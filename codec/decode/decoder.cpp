@@ -1,0 +1,213 @@
+#include "codec/decode/decoder.h"
+
+#include <exception>
+#include <optional>
+#include <string>
+#include <utility>
+
+#include "codec/decode/i_frame.h"
+#include "codec/prediction.h"
+#include "codec/reconstruct.h"
+#include "codec/shape.h"
+#include "format/bytes.h"
+#include "format/frame_syntax.h"
+#include "format/i_frame_syntax.h"
+#include "format/packet.h"
+
+namespace sac {
+namespace {
+
+Positions ToPositions(const PositionMatrix& matrix) {
+  Positions out(static_cast<std::size_t>(matrix.rows()));
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      out[v][a] = static_cast<float>(matrix(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(a)));
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+class Decoder::Impl {
+ public:
+  explicit Impl(const DecoderSettings& settings) : limits_(settings.limits), packets_(settings.limits) {}
+
+  Status Send(std::span<const std::uint8_t>& bytes);
+  Status Receive(DecodedFrame& frame);
+  Status Finish();
+
+  std::optional<SequenceHeader> header;
+  std::optional<Mesh> mesh;
+  std::vector<std::uint32_t> order;
+
+ private:
+  Status Take(Packet packet);
+  Status TakeIFrame(std::span<const std::uint8_t> payload);
+  Status TakeGroup(std::vector<std::uint8_t> payload);
+  Status TakeEnd(std::span<const std::uint8_t> payload);
+  Status DecodeFrame(DecodedFrame& frame);
+  Status Latch(Status status) {
+    if (!status.ok()) error_ = status;
+    return status;
+  }
+
+  Limits limits_;
+  PacketReader packets_;
+  std::optional<Status> error_;
+  bool ended_ = false;
+  std::uint32_t frame_count_ = 0;
+
+  std::vector<std::uint32_t> counts_;
+  Shape shape_;  // the members below refer to it
+  std::unique_ptr<Reconstructor> reconstructor_;
+  std::unique_ptr<Predictor> predictor_;
+
+  // The group being decoded.
+  std::vector<std::uint8_t> group_;
+  std::uint32_t frames_left_ = 0;
+  std::unique_ptr<RangeDecoder> range_;
+  std::unique_ptr<FrameCoder<RangeDecoder>> coder_;
+};
+
+Status Decoder::Impl::Send(std::span<const std::uint8_t>& bytes) {
+  if (error_) return *error_;
+  if (frames_left_ > 0) return Status::Ok();
+  if (ended_) return bytes.empty() ? Status::Ok() : Latch(Status::Corrupt("bytes after the end of the stream"));
+  std::optional<Packet> packet;
+  SAC_RETURN_IF_ERROR(Latch(packets_.Read(bytes, packet)));
+  if (!packet) return Status::Ok();
+  try {
+    return Latch(Take(std::move(*packet)));
+  } catch (const std::exception& e) {  // memory: the limits allow more than there is
+    return Latch(Status::Limit(e.what()));
+  }
+}
+
+Status Decoder::Impl::Take(Packet packet) {
+  switch (packet.type) {
+    case PacketType::kHeader: {
+      if (header) return Status::Corrupt("a second sequence header");
+      SequenceHeader parsed;
+      SAC_RETURN_IF_ERROR(ParseSequenceHeader(packet.payload, limits_, parsed));
+      header = parsed;
+      return Status::Ok();
+    }
+    case PacketType::kIFrame:
+      if (!header || mesh) return Status::Corrupt("an I-frame out of place");
+      return TakeIFrame(packet.payload);
+    case PacketType::kGroup:
+      if (!mesh) return Status::Corrupt("a group before the I-frame");
+      return TakeGroup(std::move(packet.payload));
+    case PacketType::kEnd:
+      if (!mesh) return Status::Corrupt("the end before the I-frame");
+      return TakeEnd(packet.payload);
+  }
+  return Status::Corrupt("unknown packet");
+}
+
+Status Decoder::Impl::TakeIFrame(std::span<const std::uint8_t> payload) {
+  IFrameSyntax syntax;
+  SAC_RETURN_IF_ERROR(ParseIFrame(payload, *header, syntax));
+  DracoMesh draco;
+  SAC_RETURN_IF_ERROR(DecodeDraco(syntax.mesh, *header, draco));
+  if (!draco.ids.empty()) return Status::Corrupt("I-frame: an unknown attribute");
+  DecodedIFrame decoded;
+  SAC_RETURN_IF_ERROR(AssembleIFrame(syntax, *header, std::move(draco), decoded));
+  Mesh out;
+  out.triangles = decoded.mesh.triangles;
+  out.uvs = std::move(decoded.uvs);
+  out.uv_triangles = std::move(decoded.uv_triangles);
+  out.normals = std::move(decoded.normals);
+  out.colors = std::move(decoded.colors);
+  counts_ = std::move(syntax.harmonics);
+  SAC_RETURN_IF_ERROR(
+      BuildShape(*header, std::move(decoded.mesh), counts_, syntax.samples_per_harmonic, limits_, shape_));
+  if (!SameFingerprint(shape_.basis.Fingerprint(), syntax.fingerprint)) {
+    return Status::Unsupported("the harmonics computed here are not the encoder's");
+  }
+  out.positions = ToPositions(shape_.positions);
+  mesh = std::move(out);
+  order = std::move(syntax.order);
+  reconstructor_ = std::make_unique<Reconstructor>(shape_, *header);
+  predictor_ = std::make_unique<Predictor>(static_cast<ReferenceShape>(header->reference_shape), shape_.order.size());
+  return Status::Ok();
+}
+
+Status Decoder::Impl::TakeGroup(std::vector<std::uint8_t> payload) {
+  ByteReader reader(payload);
+  const std::uint32_t frames = reader.Varint();
+  if (!reader.ok() || frames == 0) return Status::Corrupt("group: malformed number of frames");
+  if (frames > limits_.frames_per_group) {
+    return Status::Limit(std::to_string(frames) + " frames in a group, the limit is " +
+                         std::to_string(limits_.frames_per_group));
+  }
+  if (frames > 0xffffffffu - frame_count_) return Status::Corrupt("group: too many frames");
+  const std::size_t start = reader.position();
+  group_ = std::move(payload);
+  range_ = std::make_unique<RangeDecoder>(std::span<const std::uint8_t>(group_).subspan(start));
+  coder_ = std::make_unique<FrameCoder<RangeDecoder>>(counts_);
+  predictor_->StartGroup();
+  frames_left_ = frames;
+  return Status::Ok();
+}
+
+Status Decoder::Impl::TakeEnd(std::span<const std::uint8_t> payload) {
+  ByteReader reader(payload);
+  const std::uint32_t frames = reader.Varint();
+  if (!reader.ok() || reader.remaining() != 0) return Status::Corrupt("end: wrong length");
+  if (frames != frame_count_) {
+    return Status::Corrupt("end: " + std::to_string(frames) + " frames declared, " + std::to_string(frame_count_) +
+                           " found");
+  }
+  ended_ = true;
+  return Status::Ok();
+}
+
+Status Decoder::Impl::Receive(DecodedFrame& frame) {
+  if (error_) return *error_;
+  if (frames_left_ == 0) return Status::NeedMoreData();
+  try {
+    return Latch(DecodeFrame(frame));
+  } catch (const std::exception& e) {
+    return Latch(Status::Limit(e.what()));
+  }
+}
+
+Status Decoder::Impl::DecodeFrame(DecodedFrame& out) {
+  const std::string where = "frame " + std::to_string(frame_count_) + ": ";
+  FrameSyntax frame;
+  FrameCoefficients coefficients(shape_.order.size());
+  if (!coder_->Code(*range_, frame)) return Status::Corrupt(where + "malformed coefficients");
+  if (!predictor_->Add(frame, coefficients)) return Status::Corrupt(where + "a coefficient out of range");
+  if (!(frame.intra ? reconstructor_->StartIntra() : reconstructor_->StartPredicted())) {
+    return Status::Corrupt(where + "the reference shape is singular");
+  }
+  if (--frames_left_ == 0 && !range_->AtEnd()) return Status::Corrupt(where + "bytes after the last frame of a group");
+  out.index = frame_count_++;
+  out.intra = frame.intra;
+  out.positions = ToPositions(reconstructor_->Reconstruct(coefficients));
+  return Status::Ok();
+}
+
+Status Decoder::Impl::Finish() {
+  if (error_) return *error_;
+  if (!ended_ || frames_left_ > 0) {
+    return Latch(Status::Corrupt("the stream is truncated after frame " + std::to_string(frame_count_)));
+  }
+  return Status::Ok();
+}
+
+Decoder::Decoder(const DecoderSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
+Decoder::~Decoder() = default;
+Decoder::Decoder(Decoder&&) noexcept = default;
+Decoder& Decoder::operator=(Decoder&&) noexcept = default;
+
+Status Decoder::Send(std::span<const std::uint8_t>& bytes) { return impl_->Send(bytes); }
+Status Decoder::Receive(DecodedFrame& frame) { return impl_->Receive(frame); }
+Status Decoder::Finish() { return impl_->Finish(); }
+const SequenceHeader* Decoder::header() const { return impl_->header ? &*impl_->header : nullptr; }
+const Mesh* Decoder::mesh() const { return impl_->mesh ? &*impl_->mesh : nullptr; }
+const std::vector<std::uint32_t>& Decoder::order() const { return impl_->order; }
+
+}  // namespace sac

@@ -1,0 +1,125 @@
+#include "codec/decode/draco_mesh.h"
+
+#include <draco/compression/decode.h>
+
+#include <exception>
+#include <memory>
+#include <string>
+
+#include "format/bytes.h"
+
+namespace sac {
+namespace {
+
+// The fields before Draco's own data, whose sizes Draco trusts (Draco bitstream specification, sections 4 and 6).
+Status CheckDracoHeader(std::span<const std::uint8_t> bytes, const SequenceHeader& header) {
+  ByteReader in(bytes);
+  const auto name = in.Bytes(5);
+  if (!in.ok() || std::string(name.begin(), name.end()) != "DRACO") return Status::Corrupt("I-frame: not a Draco mesh");
+  const std::uint8_t major = in.U8(), minor = in.U8(), type = in.U8(), method = in.U8();
+  const std::uint32_t flags = in.U8() | static_cast<std::uint32_t>(in.U8()) << 8;
+  if (major != 2 || minor != 2) return Status::Corrupt("I-frame: Draco bitstream other than 2.2");
+  if (type != 1 || method != 1 || flags != 0) return Status::Corrupt("I-frame: not a plain Draco edgebreaker mesh");
+  in.U8();  // traversal
+  const std::uint32_t vertices = in.Varint(), triangles = in.Varint();
+  if (!in.ok()) return Status::Corrupt("I-frame: truncated Draco mesh");
+  if (triangles > header.triangles) return Status::Corrupt("I-frame: more Draco triangles than the header says");
+  if (vertices > 3 * static_cast<std::uint64_t>(triangles)) return Status::Corrupt("I-frame: Draco vertex count");
+  return Status::Ok();
+}
+
+// The value of `attribute` at each of its entries.
+template <class Value>
+std::vector<Value> Values(const draco::PointAttribute& attribute, std::size_t count) {
+  std::vector<Value> values(count);
+  for (std::uint32_t i = 0; i < count; ++i) {
+    attribute.GetValue(draco::AttributeValueIndex(i), values[i].data());
+  }
+  return values;
+}
+
+Status Extract(const draco::Mesh& in, const SequenceHeader& header, DracoMesh& out) {
+  const draco::PointAttribute* position = in.GetNamedAttribute(draco::GeometryAttribute::POSITION);
+  if (!position || position->data_type() != draco::DT_INT32 || position->num_components() != 3) {
+    return Status::Corrupt("I-frame: the Draco mesh has no integer positions");
+  }
+  const std::size_t entries = position->size();
+  out.entries.resize(entries);
+  const std::int32_t end = std::int32_t{1} << header.position_bits;
+  for (std::uint32_t i = 0; i < entries; ++i) {
+    std::array<std::int32_t, 3> p{};
+    position->GetValue(draco::AttributeValueIndex(i), p.data());
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (p[a] < 0 || p[a] >= end) return Status::Corrupt("I-frame: a position outside the grid");
+      out.entries[i][a] = static_cast<std::uint32_t>(p[a]);
+    }
+  }
+  const auto corners = [&](const draco::PointAttribute& attribute, std::vector<Triangle>& triangles) {
+    triangles.resize(in.num_faces());
+    for (std::uint32_t j = 0; j < in.num_faces(); ++j) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        triangles[j][k] = attribute.mapped_index(in.face(draco::FaceIndex(j))[k]).value();
+        if (triangles[j][k] >= attribute.size()) return false;
+      }
+    }
+    return true;
+  };
+  if (!corners(*position, out.triangles)) return Status::Corrupt("I-frame: a Draco corner without a position");
+
+  if (const auto* uv = in.GetNamedAttribute(draco::GeometryAttribute::TEX_COORD)) {
+    if (uv->data_type() != draco::DT_FLOAT32 || uv->num_components() != 2) {
+      return Status::Corrupt("I-frame: texture coordinates of an unknown type");
+    }
+    out.uvs = Values<std::array<float, 2>>(*uv, uv->size());
+    if (!corners(*uv, out.uv_triangles)) return Status::Corrupt("I-frame: a corner without a texture coordinate");
+  }
+  // Attributes of vertices: whichever corner comes last decides; an encoder gives all the same.
+  const auto per_entry = [&]<class Value>(const draco::PointAttribute& attribute, std::vector<Value>& values) {
+    values.resize(entries);
+    for (std::uint32_t j = 0; j < in.num_faces(); ++j) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const draco::AttributeValueIndex index = attribute.mapped_index(in.face(draco::FaceIndex(j))[k]);
+        if (index.value() >= attribute.size()) return false;
+        attribute.GetValue(index, &values[out.triangles[j][k]]);
+      }
+    }
+    return true;
+  };
+  if (const auto* normal = in.GetNamedAttribute(draco::GeometryAttribute::NORMAL)) {
+    if (normal->data_type() != draco::DT_FLOAT32 || normal->num_components() != 3 || !per_entry(*normal, out.normals)) {
+      return Status::Corrupt("I-frame: malformed normals");
+    }
+  }
+  if (const auto* color = in.GetNamedAttribute(draco::GeometryAttribute::COLOR)) {
+    if (color->data_type() != draco::DT_UINT8 || color->num_components() != 4 || !per_entry(*color, out.colors)) {
+      return Status::Corrupt("I-frame: malformed colours");
+    }
+  }
+  if (const auto* id = in.GetNamedAttribute(draco::GeometryAttribute::GENERIC)) {
+    if (id->data_type() != draco::DT_UINT32 || id->num_components() != 1 || !per_entry(*id, out.ids)) {
+      return Status::Corrupt("I-frame: an unknown attribute");
+    }
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& header, DracoMesh& mesh) {
+  mesh = {};
+  if (bytes.empty()) return Status::Ok();
+  SAC_RETURN_IF_ERROR(CheckDracoHeader(bytes, header));
+  try {  // Draco reports with a status, but allocates with new
+    draco::DecoderBuffer buffer;
+    buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+    draco::Decoder decoder;
+    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
+    if (!decoded.ok()) return Status::Corrupt("I-frame: Draco: " + decoded.status().error_msg_string());
+    if (buffer.remaining_size() != 0) return Status::Corrupt("I-frame: bytes after the Draco mesh");
+    return Extract(*decoded.value(), header, mesh);
+  } catch (const std::exception& e) {
+    return Status::Corrupt(std::string("I-frame: Draco: ") + e.what());
+  }
+}
+
+}  // namespace sac

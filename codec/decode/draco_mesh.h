@@ -1,0 +1,31 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/mesh.h"
+#include "codec/shape.h"
+#include "format/sequence_header.h"
+#include "format/status.h"
+
+namespace sac {
+
+// A mesh as Draco holds it (spec.md 5.1): entries are the values of its position attribute. Draco splits vertices that
+// are not manifold into several entries and drops degenerate triangles.
+struct DracoMesh {
+  std::vector<GridPosition> entries;
+  std::vector<Triangle> triangles;  // of entries
+  std::vector<std::array<float, 2>> uvs;
+  std::vector<Triangle> uv_triangles;  // of uvs; empty without texture coordinates
+  std::vector<Vec3f> normals;          // per entry; empty without
+  std::vector<std::array<std::uint8_t, 4>> colors;  // per entry; empty without
+  std::vector<std::uint32_t> ids;  // per entry, of an encoder's own numbering; empty without
+};
+
+// Decodes a Draco stream; sizes are checked against `header` before Draco allocates. kCorrupt when Draco refuses it or a
+// rule of spec.md 5.1 is broken.
+Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& header, DracoMesh& mesh);
+
+}  // namespace sac

@@ -1,0 +1,30 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/decode/draco_mesh.h"
+#include "codec/mesh.h"
+#include "codec/shape.h"
+#include "format/i_frame_syntax.h"
+#include "format/sequence_header.h"
+#include "format/status.h"
+
+namespace sac {
+
+// The first frame's mesh with vertices numbered as everywhere after it: by component, then as Draco gives them
+// (spec.md 5.3).
+struct DecodedIFrame {
+  DecodedMesh mesh;
+  std::vector<std::array<float, 2>> uvs;
+  std::vector<Triangle> uv_triangles;
+  std::vector<Vec3f> normals;
+  std::vector<std::array<std::uint8_t, 4>> colors;
+  std::vector<std::uint32_t> vertex_of_entry;  // Draco's entries, then the loose vertices
+};
+
+// Joins Draco's mesh with what Draco could not code. kCorrupt when the counts do not add up to the header's.
+Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco, DecodedIFrame& out);
+
+}  // namespace sac

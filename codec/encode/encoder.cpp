@@ -1,0 +1,278 @@
+#include "codec/encode/encoder.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <string>
+#include <utility>
+
+#include "codec/encode/frame_encoder.h"
+#include "codec/encode/i_frame_encoder.h"
+#include "codec/encode/quality.h"
+#include "codec/shape.h"
+#include "format/frame_syntax.h"
+#include "format/packet.h"
+
+namespace sac {
+namespace {
+
+Status CheckSettings(const EncoderSettings& s) {
+  const auto positive = [](const std::optional<double>& v) { return !v || (std::isfinite(*v) && *v > 0); };
+  if (!(s.quality >= 0 && s.quality <= 100)) return Status::InvalidArgument("quality must be from 0 to 100");
+  if (s.harmonics == 0) return Status::InvalidArgument("at least one harmonic is needed");
+  if (s.group == 0 || s.group > Limits{}.frames_per_group) {
+    return Status::InvalidArgument("a group holds from 1 to " + std::to_string(Limits{}.frames_per_group) + " frames");
+  }
+  if (!positive(s.motion_step)) return Status::InvalidArgument("the motion step must be positive");
+  if (!positive(s.displacement_step)) return Status::InvalidArgument("the displacement step must be positive");
+  if (s.position_bits && (*s.position_bits < 1 || *s.position_bits > 24)) {
+    return Status::InvalidArgument("position bits must be from 1 to 24");
+  }
+  if (s.frame_rate_denominator == 0) return Status::InvalidArgument("the frame rate's denominator is zero");
+  return Status::Ok();
+}
+
+Status CheckMesh(const Mesh& mesh) {
+  const std::size_t n = mesh.positions.size();
+  const Limits limits;
+  if (n == 0) return Status::InvalidArgument("the mesh has no vertices");
+  if (n > limits.vertices || mesh.triangles.size() > limits.triangles) {
+    return Status::Limit("the mesh has more than " + std::to_string(limits.vertices) + " vertices or " +
+                         std::to_string(limits.triangles) + " triangles");
+  }
+  for (const Triangle& t : mesh.triangles) {
+    if (std::max({t[0], t[1], t[2]}) >= n) return Status::InvalidArgument("a triangle of a missing vertex");
+  }
+  if (!mesh.uv_triangles.empty() && mesh.uv_triangles.size() != mesh.triangles.size()) {
+    return Status::InvalidArgument("texture coordinates for some triangles only");
+  }
+  for (const Triangle& t : mesh.uv_triangles) {
+    if (std::max({t[0], t[1], t[2]}) >= mesh.uvs.size()) {
+      return Status::InvalidArgument("a corner of a missing texture coordinate");
+    }
+  }
+  if ((!mesh.normals.empty() && mesh.normals.size() != n) || (!mesh.colors.empty() && mesh.colors.size() != n)) {
+    return Status::InvalidArgument("normals or colours for some vertices only");
+  }
+  return Status::Ok();
+}
+
+Status CheckFinite(std::span<const Vec3f> positions) {
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    for (const float x : positions[v]) {
+      if (!std::isfinite(x)) return Status::InvalidArgument("vertex " + std::to_string(v) + ": not a finite number");
+    }
+  }
+  return Status::Ok();
+}
+
+// Puts the grid around the positions; the cell is rounded up to a float so that none falls off.
+Status ChooseGrid(const Positions& positions, SequenceHeader& header, std::vector<GridPosition>& grid) {
+  std::array<double, 3> low, high;
+  low.fill(std::numeric_limits<double>::max());
+  high.fill(std::numeric_limits<double>::lowest());
+  for (const Vec3f& p : positions) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], static_cast<double>(p[a]));
+      high[a] = std::max(high[a], static_cast<double>(p[a]));
+    }
+  }
+  const double extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  if (extent > 1e37) return Status::InvalidArgument("the coordinates span more than 1e37");
+  const std::uint32_t last = (1u << header.position_bits) - 1;
+  header.cell = std::max(static_cast<float>(extent / last), 1e-35f);
+  header.origin_x = static_cast<float>(low[0]);
+  header.origin_y = static_cast<float>(low[1]);
+  header.origin_z = static_cast<float>(low[2]);
+  grid.clear();
+  for (const Vec3f& p : positions) {
+    GridPosition& g = grid.emplace_back();
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double cells = std::round((static_cast<double>(p[a]) - low[a]) / static_cast<double>(header.cell));
+      g[a] = static_cast<std::uint32_t>(std::clamp(cells, 0.0, static_cast<double>(last)));
+    }
+  }
+  return Status::Ok();
+}
+
+double RmsRadius(const Positions& positions) {
+  std::array<double, 3> sum{};
+  double squares = 0;
+  for (const Vec3f& p : positions) {
+    for (std::size_t a = 0; a < 3; ++a) sum[a] += static_cast<double>(p[a]);
+  }
+  const auto n = static_cast<double>(positions.size());
+  for (const Vec3f& p : positions) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double d = static_cast<double>(p[a]) - sum[a] / n;
+      squares += d * d;
+    }
+  }
+  return std::sqrt(squares / n);
+}
+
+// Harmonics for each component in proportion to its area, which by Weyl's law is an equal bound on eigenvalues; one at
+// least, for its own rigid motion.
+std::vector<std::uint32_t> ShareHarmonics(const DecodedMesh& mesh, std::uint32_t wanted) {
+  PositionMatrix positions(static_cast<Eigen::Index>(mesh.grid.size()), 3);
+  for (std::size_t v = 0; v < mesh.grid.size(); ++v) {
+    positions.row(static_cast<Eigen::Index>(v)) << mesh.grid[v][0], mesh.grid[v][1], mesh.grid[v][2];
+  }
+  const Eigen::VectorXd masses = VertexMasses(positions, mesh.triangles);
+  const auto components = static_cast<double>(mesh.components.size());
+  const double spare = std::max(0.0, static_cast<double>(wanted) - components);
+  std::vector<std::uint32_t> counts;
+  for (const Component& c : mesh.components) {
+    const double share = masses.segment(c.first, c.count).sum();
+    counts.push_back(std::min(c.count, 1 + static_cast<std::uint32_t>(std::floor(spare * share + 1e-9))));
+  }
+  return counts;
+}
+
+}  // namespace
+
+class Encoder::Impl {
+ public:
+  Status Start(const Mesh& first, const EncoderSettings& settings);
+  Status Send(std::span<const Vec3f> positions);
+  Status Finish();
+
+  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint32_t> order;
+  SequenceHeader header;
+  StreamBytes stream_bytes;
+
+ private:
+  void Append(PacketType type, std::span<const std::uint8_t> payload, double StreamBytes::*part);
+  void FlushGroup();
+
+  EncoderSettings settings_;
+  Shape shape_;
+  std::vector<std::uint32_t> counts_;
+  std::unique_ptr<FrameEncoder> frames_;
+  std::unique_ptr<FrameCoder<RangeEncoder>> coder_;
+  RangeEncoder range_;
+  FrameBits group_bits_;
+  std::uint32_t group_frames_ = 0;
+  std::uint32_t frame_count_ = 0;
+  bool finished_ = false;
+};
+
+Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) {
+  SAC_RETURN_IF_ERROR(CheckSettings(settings));
+  SAC_RETURN_IF_ERROR(CheckMesh(first));
+  SAC_RETURN_IF_ERROR(CheckFinite(first.positions));
+  settings_ = settings;
+  const QualitySettings quality = SettingsOfQuality(settings.quality);
+  const double rms = std::max(RmsRadius(first.positions), 1e-30);
+  const double displacement_step = settings.displacement_step.value_or(quality.displacement_step);
+  header.reference_shape = static_cast<std::uint8_t>(settings.reference_shape);
+  header.position_bits = static_cast<std::uint8_t>(settings.position_bits.value_or(quality.position_bits));
+  header.vertices = static_cast<std::uint32_t>(first.positions.size());
+  header.triangles = static_cast<std::uint32_t>(first.triangles.size());
+  header.frame_rate_numerator = settings.frame_rate_numerator;
+  header.frame_rate_denominator = settings.frame_rate_denominator;
+  header.motion_step = static_cast<float>(settings.motion_step.value_or(quality.motion_step));
+  header.displacement_step = static_cast<float>(displacement_step * rms);
+  header.rotation_step = static_cast<float>(displacement_step);
+  header.translation_step = header.displacement_step;
+
+  std::vector<GridPosition> grid;
+  SAC_RETURN_IF_ERROR(ChooseGrid(first.positions, header, grid));
+  IFrameSyntax syntax;
+  DecodedIFrame decoded;
+  SAC_RETURN_IF_ERROR(EncodeIFrameMesh(first, grid, header, syntax, decoded, order));
+  counts_ = ShareHarmonics(decoded.mesh, settings.harmonics);
+  for (const std::uint32_t c : counts_) header.harmonics += c;
+  syntax.harmonics = counts_;
+  syntax.samples_per_harmonic = settings.samples_per_harmonic;
+  if (settings.keep_order) syntax.order = order;
+  SAC_RETURN_IF_ERROR(
+      BuildShape(header, std::move(decoded.mesh), counts_, settings.samples_per_harmonic, Limits{}, shape_));
+  syntax.fingerprint = shape_.basis.Fingerprint();
+  frames_ = std::make_unique<FrameEncoder>(shape_, header);
+
+  bytes.assign(std::begin(kMagic), std::end(kMagic));
+  stream_bytes.header += 4;
+  Append(PacketType::kHeader, WriteSequenceHeader(header), &StreamBytes::header);
+  Append(PacketType::kIFrame, WriteIFrame(syntax, header), &StreamBytes::i_frame);
+  return Status::Ok();
+}
+
+void Encoder::Impl::Append(PacketType type, std::span<const std::uint8_t> payload, double StreamBytes::*part) {
+  const std::vector<std::uint8_t> packet = WritePacket(type, payload);
+  bytes.insert(bytes.end(), packet.begin(), packet.end());
+  stream_bytes.*part += static_cast<double>(packet.size());
+}
+
+Status Encoder::Impl::Send(std::span<const Vec3f> positions) {
+  if (finished_) return Status::InvalidArgument("the stream is finished");
+  if (positions.size() != order.size()) {
+    return Status::InvalidArgument(std::to_string(positions.size()) + " vertices, expected " +
+                                   std::to_string(order.size()));
+  }
+  SAC_RETURN_IF_ERROR(CheckFinite(positions));
+  PositionMatrix ordered(static_cast<Eigen::Index>(order.size()), 3);
+  for (std::size_t v = 0; v < order.size(); ++v) {
+    const Vec3f& p = positions[order[v]];
+    ordered.row(static_cast<Eigen::Index>(v)) << static_cast<double>(p[0]), static_cast<double>(p[1]),
+        static_cast<double>(p[2]);
+  }
+  if (group_frames_ == 0) {
+    coder_ = std::make_unique<FrameCoder<RangeEncoder>>(counts_);
+    range_ = RangeEncoder();
+    group_bits_ = {};
+    frames_->StartGroup();
+  }
+  FrameSyntax frame;
+  if (!frames_->Encode(ordered, frame) || !coder_->Code(range_, frame, &group_bits_)) {
+    return Status::InvalidArgument("the frame is too far from the first one for these steps");
+  }
+  ++frame_count_;
+  if (++group_frames_ == settings_.group) FlushGroup();
+  return Status::Ok();
+}
+
+void Encoder::Impl::FlushGroup() {
+  ByteWriter payload;
+  payload.Varint(group_frames_);
+  payload.Bytes(range_.Finish());
+  const double before = stream_bytes.side;
+  Append(PacketType::kGroup, payload.bytes(), &StreamBytes::side);
+  // Whole bytes for the planes, the rest is side information.
+  const double motion = std::round(group_bits_.motion / 8), displacement = std::round(group_bits_.displacement / 8);
+  stream_bytes.side = std::max(before, stream_bytes.side - motion - displacement);
+  stream_bytes.motion += motion;
+  stream_bytes.displacement += displacement;
+  group_frames_ = 0;
+}
+
+Status Encoder::Impl::Finish() {
+  if (finished_) return Status::InvalidArgument("the stream is finished");
+  if (group_frames_ > 0) FlushGroup();
+  ByteWriter payload;
+  payload.Varint(frame_count_);
+  Append(PacketType::kEnd, payload.bytes(), &StreamBytes::header);
+  finished_ = true;
+  return Status::Ok();
+}
+
+Encoder::Encoder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
+Encoder::~Encoder() = default;
+
+Status Encoder::Create(const Mesh& first_frame, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder) {
+  auto impl = std::make_unique<Impl>();
+  SAC_RETURN_IF_ERROR(impl->Start(first_frame, settings));
+  encoder.reset(new Encoder(std::move(impl)));
+  return Status::Ok();
+}
+
+Status Encoder::Send(std::span<const Vec3f> positions) { return impl_->Send(positions); }
+Status Encoder::Finish() { return impl_->Finish(); }
+std::vector<std::uint8_t> Encoder::TakeBytes() { return std::exchange(impl_->bytes, {}); }
+const std::vector<std::uint32_t>& Encoder::order() const { return impl_->order; }
+const SequenceHeader& Encoder::header() const { return impl_->header; }
+const StreamBytes& Encoder::stream_bytes() const { return impl_->stream_bytes; }
+
+}  // namespace sac

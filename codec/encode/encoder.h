@@ -1,0 +1,78 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "codec/mesh.h"
+#include "format/sequence_header.h"
+#include "format/status.h"
+
+namespace sac {
+
+// Everything an encoder chooses. Steps and bits that are left out come from `quality`.
+struct EncoderSettings {
+  double quality = 50;                      // 0 (smallest) to 100 (nearest to the input)
+  std::uint32_t harmonics = 200;            // over all components; at least one each, at most the vertices
+  std::uint32_t samples_per_harmonic = 0;   // of the reduced basis; 0: exact harmonics
+  std::uint32_t group = 128;                // frames between points of random access
+  ReferenceShape reference_shape = ReferenceShape::kKey;
+  std::optional<double> motion_step;        // radians and strain
+  std::optional<double> displacement_step;  // fraction of the first frame's RMS radius
+  std::optional<int> position_bits;         // of the I-frame's grid, 1..24
+  std::uint32_t frame_rate_numerator = 0;   // frames per second; 0: unknown
+  std::uint32_t frame_rate_denominator = 1;
+  bool keep_order = false;                  // put the input's vertex order in the stream
+};
+
+// Bytes by what they say; they add up to the stream.
+struct StreamBytes {
+  double header = 0;  // magic, sequence header, end
+  double i_frame = 0;
+  double motion = 0;
+  double displacement = 0;
+  double side = 0;  // rigid motion, frame types, packet framing of groups
+};
+
+// Turns frames into a stream, one at a time. Holds one group, not the clip.
+//
+//   std::unique_ptr<sac::Encoder> encoder;
+//   status = sac::Encoder::Create(mesh, settings, encoder);   // mesh: the first frame with its triangles
+//   for (each frame, the first one too) {
+//     status = encoder->Send(positions);
+//     write(encoder->TakeBytes());
+//   }
+//   status = encoder->Finish();
+//   write(encoder->TakeBytes());
+class Encoder {
+ public:
+  // Codes the I-frame, computes the harmonics. kInvalidArgument for settings out of range, a mesh without vertices, a
+  // triangle of a missing vertex or coordinates that are not finite.
+  static Status Create(const Mesh& first_frame, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder);
+  ~Encoder();
+  Encoder(const Encoder&) = delete;
+  Encoder& operator=(const Encoder&) = delete;
+
+  // The next frame, in the vertex order of `first_frame`, model units. kInvalidArgument when the number of vertices
+  // differs or a coordinate is not finite; the encoder can go on with another frame then.
+  Status Send(std::span<const Vec3f> positions);
+  // Ends the stream.
+  Status Finish();
+
+  // What has been coded since the last call.
+  std::vector<std::uint8_t> TakeBytes();
+
+  // The index in the input of each decoded vertex.
+  const std::vector<std::uint32_t>& order() const;
+  const SequenceHeader& header() const;
+  const StreamBytes& stream_bytes() const;
+
+ private:
+  class Impl;
+  explicit Encoder(std::unique_ptr<Impl> impl);
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace sac

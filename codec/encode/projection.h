@@ -1,0 +1,38 @@
+#pragma once
+
+#include <Eigen/Cholesky>
+#include <Eigen/Core>
+#include <vector>
+
+#include "codec/shape.h"
+
+namespace sac {
+
+// Least squares of fields onto the harmonics, component by component. Results are harmonics x channels in the order of a
+// plane's coefficients.
+class Projection {
+ public:
+  // `shape` must outlive it. `areas`: weights of the triangles.
+  Projection(const Shape& shape, const Eigen::VectorXd& areas);
+
+  // The coefficients whose mean over each triangle's three vertices is nearest to `fields` (triangles x channels),
+  // weighted by area: the paper's matrix C (Wang et al. 2015, equation 6).
+  Eigen::MatrixXd ProjectTriangles(const Eigen::MatrixXd& fields) const;
+
+  // The coefficients nearest to `field` (vertices x channels), every vertex alike.
+  Eigen::MatrixXd ProjectVertices(const Eigen::MatrixXd& field) const;
+
+ private:
+  struct Systems {
+    Eigen::LDLT<Eigen::MatrixXd> triangles;
+    Eigen::LDLT<Eigen::MatrixXd> vertices;
+  };
+
+  Eigen::MatrixXd Solve(const Eigen::MatrixXd& at_vertices, Eigen::LDLT<Eigen::MatrixXd> Systems::*system) const;
+
+  const Shape& shape_;
+  Eigen::VectorXd areas_;
+  std::vector<Systems> systems_;
+};
+
+}  // namespace sac

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/components.h"
+#include "codec/laplacian.h"
+#include "format/status.h"
+
+namespace sac {
+
+// The manifold harmonics of one component: eigenfunctions of its Laplace-Beltrami operator (Vallet and Levy 2008).
+struct ComponentHarmonics {
+  Component component;
+  Eigen::MatrixXd vectors;      // count x harmonics, unit mean square
+  Eigen::VectorXd eigenvalues;  // ascending
+};
+
+struct HarmonicBasis {
+  std::vector<ComponentHarmonics> components;
+
+  // Two numbers that differ when the basis does: the sum of eigenvalues, and a fixed generic bilinear form of the
+  // vectors (spec.md 6.6).
+  std::array<float, 2> Fingerprint() const;
+};
+
+// Whether two fingerprints are of the same basis, as computed by different machines.
+bool SameFingerprint(const std::array<float, 2>& a, const std::array<float, 2>& b);
+
+// Computes the basis as spec.md 6.4 defines it. `grid` holds the vertices' integer positions, `masses` and `weights` are
+// of the decoded first frame. kCorrupt when an eigenvalue problem does not converge.
+Status ComputeHarmonics(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,
+                        std::span<const std::array<std::uint32_t, 3>> grid, std::span<const Component> components,
+                        std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic,
+                        HarmonicBasis& basis);
+
+}  // namespace sac

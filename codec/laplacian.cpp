@@ -1,0 +1,88 @@
+#include "codec/laplacian.h"
+
+#include <Eigen/Geometry>
+
+#include <algorithm>
+#include <cmath>
+
+namespace sac {
+
+EdgeList BuildEdges(std::span<const Triangle> triangles) {
+  EdgeList edges;
+  edges.ends.reserve(3 * triangles.size());
+  const auto edge = [&](std::size_t j, std::size_t k) {
+    const std::uint32_t a = triangles[j][(k + 1) % 3], b = triangles[j][(k + 2) % 3];
+    return std::array<std::uint32_t, 2>{std::min(a, b), std::max(a, b)};
+  };
+  for (std::size_t j = 0; j < triangles.size(); ++j) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (const auto e = edge(j, k); e[0] != e[1]) edges.ends.push_back(e);
+    }
+  }
+  std::sort(edges.ends.begin(), edges.ends.end());
+  edges.ends.erase(std::unique(edges.ends.begin(), edges.ends.end()), edges.ends.end());
+  edges.of_triangle.resize(triangles.size());
+  for (std::size_t j = 0; j < triangles.size(); ++j) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto e = edge(j, k);
+      edges.of_triangle[j][k] = e[0] == e[1] ? EdgeList::kNone
+                                             : static_cast<std::uint32_t>(
+                                                   std::lower_bound(edges.ends.begin(), edges.ends.end(), e) -
+                                                   edges.ends.begin());
+    }
+  }
+  return edges;
+}
+
+std::vector<double> CotangentWeights(const PositionMatrix& positions, std::span<const Triangle> triangles,
+                                     const EdgeList& edges) {
+  std::vector<double> weights(edges.ends.size(), 0.0);
+  for (std::size_t j = 0; j < triangles.size(); ++j) {
+    const Eigen::Vector3d p[3] = {positions.row(triangles[j][0]), positions.row(triangles[j][1]),
+                                  positions.row(triangles[j][2])};
+    const double double_area = (p[1] - p[0]).cross(p[2] - p[0]).norm();
+    const double longest =
+        std::max({(p[1] - p[0]).squaredNorm(), (p[2] - p[1]).squaredNorm(), (p[0] - p[2]).squaredNorm()});
+    if (longest == 0) continue;
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t e = edges.of_triangle[j][k];
+      if (e == EdgeList::kNone) continue;
+      const double dot = (p[(k + 1) % 3] - p[k]).dot(p[(k + 2) % 3] - p[k]);
+      weights[e] += std::clamp(dot / std::max(double_area, 1e-6 * longest), -5.0, 5.0) / 2;
+    }
+  }
+  for (double& w : weights) w = std::max(w, kMinWeight);
+  return weights;
+}
+
+Eigen::VectorXd VertexMasses(const PositionMatrix& positions, std::span<const Triangle> triangles) {
+  Eigen::VectorXd masses = Eigen::VectorXd::Zero(positions.rows());
+  for (const Triangle& t : triangles) {
+    const Eigen::Vector3d a = positions.row(t[1]) - positions.row(t[0]), b = positions.row(t[2]) - positions.row(t[0]);
+    const double third = a.cross(b).norm() / 6;
+    for (const std::uint32_t v : t) masses[v] += third;
+  }
+  const double mean = masses.mean();
+  masses = mean > 0 ? masses.cwiseMax(1e-3 * mean).eval() : Eigen::VectorXd::Ones(positions.rows()).eval();
+  return masses / masses.sum();
+}
+
+Eigen::SparseMatrix<double> LaplacianMatrix(const EdgeList& edges, std::span<const double> weights, std::uint32_t first,
+                                            std::uint32_t count) {
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(count);
+  const auto begin = std::lower_bound(edges.ends.begin(), edges.ends.end(), std::array<std::uint32_t, 2>{first, 0});
+  for (auto e = begin; e != edges.ends.end() && (*e)[0] < first + count; ++e) {
+    const double w = weights[static_cast<std::size_t>(e - edges.ends.begin())];
+    const auto a = static_cast<int>((*e)[0] - first), b = static_cast<int>((*e)[1] - first);
+    entries.emplace_back(b, a, -w);
+    diagonal[a] += w;
+    diagonal[b] += w;
+  }
+  for (int v = 0; v < static_cast<int>(count); ++v) entries.emplace_back(v, v, diagonal[v]);
+  Eigen::SparseMatrix<double> matrix(count, count);
+  matrix.setFromTriplets(entries.begin(), entries.end());
+  return matrix;
+}
+
+}  // namespace sac

@@ -1,0 +1,40 @@
+#include "codec/poisson_system.h"
+
+#include <utility>
+
+namespace sac {
+
+PoissonSystem::PoissonSystem(const Shape& shape) : shape_(shape) {}
+
+bool PoissonSystem::SetReference(const PositionMatrix& reference, std::vector<double> weights) {
+  reference_ = reference;
+  weights_ = std::move(weights);
+  matrix_ = LaplacianMatrix(shape_.edges, weights_, 0, static_cast<std::uint32_t>(shape_.vertices()));
+  // Every component is free to move as a whole: tie its first vertex to the origin, Solve() moves it afterwards.
+  const double tie = std::max(matrix_.diagonal().mean(), 1.0);
+  for (const Component& c : shape_.components) matrix_.coeffRef(c.first, c.first) += tie;
+  if (!std::exchange(analyzed_, true)) solver_.analyzePattern(matrix_);
+  solver_.factorize(matrix_);
+  return solver_.info() == Eigen::Success;
+}
+
+const PositionMatrix& PoissonSystem::Solve(const DeformationGradients& gradients) {
+  right_side_.setZero(reference_.rows(), 3);
+  for (std::size_t i = 0; i < weights_.size(); ++i) {
+    const auto [a, b] = shape_.edges.ends[i];
+    const Eigen::Vector3d edge = reference_.row(a) - reference_.row(b);
+    const Eigen::Vector3d pull = (gradients[a] + gradients[b]) * edge * (weights_[i] / 2);
+    right_side_.row(a) += pull;
+    right_side_.row(b) -= pull;
+  }
+  solution_ = solver_.solve(right_side_);
+  for (const Component& c : shape_.components) {
+    const auto mass = shape_.masses.segment(c.first, c.count);
+    auto x = solution_.middleRows(c.first, c.count);
+    const Eigen::RowVector3d shift = mass.transpose() * (reference_.middleRows(c.first, c.count) - x) / mass.sum();
+    x.rowwise() += shift;
+  }
+  return solution_;
+}
+
+}  // namespace sac

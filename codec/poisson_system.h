@@ -1,0 +1,40 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <Eigen/SparseCholesky>
+#include <span>
+#include <vector>
+
+#include "codec/shape.h"
+
+namespace sac {
+
+using DeformationGradients = std::vector<Eigen::Matrix3d>;  // one a vertex
+
+// Finds the vertices whose edges are those of a reference shape after deformation (spec.md 6.5.3): the minimum of
+//   sum over edges (a, b) of w_ab || x_a - x_b - (J_a + J_b) / 2 (y_a - y_b) ||^2,
+// which is the Poisson problem of Sumner and Popovic 2004 with the deformation gradients J at vertices.
+class PoissonSystem {
+ public:
+  // `shape` must outlive the system.
+  explicit PoissonSystem(const Shape& shape);
+
+  // Takes `reference`, with its cotangent weights, as y. False when the factorization fails.
+  bool SetReference(const PositionMatrix& reference, std::vector<double> weights);
+
+  // The deformed positions. Each component's area-weighted centroid is the reference's.
+  const PositionMatrix& Solve(const DeformationGradients& gradients);
+  const PositionMatrix& solution() const { return solution_; }
+
+ private:
+  const Shape& shape_;
+  PositionMatrix reference_;
+  std::vector<double> weights_;
+  Eigen::SparseMatrix<double> matrix_;
+  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver_;
+  bool analyzed_ = false;
+  PositionMatrix right_side_;
+  PositionMatrix solution_;
+};
+
+}  // namespace sac

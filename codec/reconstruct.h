@@ -1,0 +1,74 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/poisson_system.h"
+#include "codec/prediction.h"
+#include "codec/shape.h"
+#include "format/sequence_header.h"
+
+namespace sac {
+
+// The values of one plane at the vertices, harmonics times coefficients (spec.md 6.5.1). Only harmonics whose
+// coefficients changed are touched.
+class PlaneField {
+ public:
+  PlaneField(const Shape& shape, int channels, double step);
+
+  // vertices x channels.
+  const Eigen::MatrixXd& Update(std::span<const std::int32_t> coefficients);
+  // Forgets what was summed up, so that values do not depend on what was decoded before a group.
+  void Reset();
+
+ private:
+  const Shape& shape_;
+  double step_;
+  std::vector<std::int32_t> held_;
+  Eigen::MatrixXd values_;
+};
+
+// Turns coefficients into positions: the one body that encoder and decoder call.
+class Reconstructor {
+ public:
+  // `shape` must outlive it. Call StartGroup() first.
+  Reconstructor(const Shape& shape, const SequenceHeader& header);
+
+  // The next frame is intra: measured against M'0, independent of what came before. False when the reference shape
+  // cannot be factorized.
+  bool StartIntra();
+  // The next frame is predicted: of `previous`, measured against the last frame reconstructed.
+  bool StartPredicted();
+
+  // What the motion plane alone gives, before the rigid motion.
+  const PositionMatrix& ReconstructMotion(std::span<const std::int32_t> motion);
+  // Adds the displacement plane to the result of ReconstructMotion: the frame before its rigid motion.
+  const PositionMatrix& AddDisplacement(std::span<const std::int32_t> displacement);
+  // The frame in model units: `aligned` after its rigid motion (spec.md 6.5.4).
+  PositionMatrix ApplyRigid(const PositionMatrix& aligned, const std::array<std::int32_t, 6>& rigid) const;
+  // The inverse, for encoders: positions as they were before the rigid motion.
+  PositionMatrix RemoveRigid(const PositionMatrix& positions, const std::array<std::int32_t, 6>& rigid) const;
+
+  // All of the above: a frame's positions in model units.
+  PositionMatrix Reconstruct(const FrameCoefficients& frame);
+
+  // The shape that the next frame's motion is measured against.
+  const PositionMatrix& reference() const { return reference_is_key_ ? shape_.positions : aligned_; }
+
+ private:
+  Eigen::Matrix3d Rotation(const std::array<std::int32_t, 6>& rigid) const;
+  Eigen::RowVector3d Translation(const std::array<std::int32_t, 6>& rigid) const;
+
+  const Shape& shape_;
+  SequenceHeader header_;
+  PlaneField motion_;
+  PlaneField displacement_;
+  PoissonSystem poisson_;
+  bool reference_is_key_ = false;
+  DeformationGradients gradients_;
+  PositionMatrix aligned_;
+};
+
+}  // namespace sac

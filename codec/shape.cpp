@@ -1,0 +1,42 @@
+#include "codec/shape.h"
+
+#include <string>
+#include <utility>
+
+namespace sac {
+
+Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<const std::uint32_t> counts,
+                  std::uint32_t samples_per_harmonic, const Limits& limits, Shape& shape) {
+  if (counts.size() != mesh.components.size()) {
+    return Status::Corrupt("I-frame: " + std::to_string(mesh.components.size()) + " components, but harmonics for " +
+                           std::to_string(counts.size()));
+  }
+  std::uint64_t values = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0 || counts[i] > mesh.components[i].count) {
+      return Status::Corrupt("I-frame: more harmonics than vertices in a component");
+    }
+    if (counts[i] > limits.harmonics) return Status::Limit("more harmonics in a component than the limit");
+    values += static_cast<std::uint64_t>(counts[i]) * mesh.components[i].count;
+  }
+  if (values > limits.basis_values) return Status::Limit("the harmonic basis is larger than the limit");
+
+  shape.triangles = std::move(mesh.triangles);
+  shape.components = std::move(mesh.components);
+  shape.edges = BuildEdges(shape.triangles);
+  shape.positions.resize(static_cast<Eigen::Index>(mesh.grid.size()), 3);
+  const Eigen::RowVector3d origin(header.origin_x, header.origin_y, header.origin_z);
+  for (std::size_t v = 0; v < mesh.grid.size(); ++v) {
+    const GridPosition& g = mesh.grid[v];
+    shape.positions.row(static_cast<Eigen::Index>(v)) =
+        origin + static_cast<double>(header.cell) * Eigen::RowVector3d(g[0], g[1], g[2]);
+  }
+  shape.weights = CotangentWeights(shape.positions, shape.triangles, shape.edges);
+  shape.masses = VertexMasses(shape.positions, shape.triangles);
+  shape.centre = shape.masses.transpose() * shape.positions;
+  shape.order = HarmonicOrder(counts);
+  return ComputeHarmonics(shape.edges, shape.weights, shape.masses, mesh.grid, shape.components, counts,
+                          samples_per_harmonic, shape.basis);
+}
+
+}  // namespace sac

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "codec/components.h"
+#include "codec/harmonics.h"
+#include "codec/laplacian.h"
+#include "codec/mesh.h"
+#include "format/harmonic_order.h"
+#include "format/limits.h"
+#include "format/sequence_header.h"
+#include "format/status.h"
+
+namespace sac {
+
+using GridPosition = std::array<std::uint32_t, 3>;
+
+// The decoded first frame, M'0: integer positions, and triangles whose components are contiguous runs of vertices.
+struct DecodedMesh {
+  std::vector<GridPosition> grid;
+  std::vector<Triangle> triangles;
+  std::vector<Component> components;
+};
+
+// Everything that both directions derive from the I-frame (spec.md 6).
+struct Shape {
+  std::vector<Triangle> triangles;
+  std::vector<Component> components;
+  EdgeList edges;
+  PositionMatrix positions;      // of M'0, model units
+  Eigen::RowVector3d centre;     // area-weighted mean of M'0
+  std::vector<double> weights;   // cotangent weight per edge, of M'0
+  Eigen::VectorXd masses;        // area share per vertex, of M'0
+  HarmonicBasis basis;
+  std::vector<HarmonicIndex> order;  // of a plane's coefficients
+
+  std::size_t vertices() const { return static_cast<std::size_t>(positions.rows()); }
+};
+
+// Builds the shape. `counts`: harmonics per component, one for each component of `mesh`, at most its vertices.
+// kLimit when the basis would hold more values than `limits` allows; kCorrupt when counts do not fit or the harmonics do
+// not converge.
+Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<const std::uint32_t> counts,
+                  std::uint32_t samples_per_harmonic, const Limits& limits, Shape& shape);
+
+}  // namespace sac

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "format/limits.h"
+#include "format/sequence_header.h"
+#include "format/status.h"
+
+namespace sac {
+
+// Two points of the Draco mesh that are one vertex.
+struct Weld {
+  std::uint32_t point;  // ascending from weld to weld
+  std::uint32_t onto;   // a smaller point
+};
+
+// A vertex that no triangle of the Draco mesh uses.
+struct LooseVertex {
+  std::array<std::uint32_t, 3> position;  // on the grid
+  std::array<float, 3> normal;            // when the mesh has normals
+  std::array<std::uint8_t, 4> color;      // when the mesh has colours
+};
+
+// The payload of an I-frame packet (spec.md 5): the mesh as Draco codes it, what Draco cannot code, and how to build the
+// harmonic basis.
+struct IFrameSyntax {
+  std::vector<std::uint8_t> mesh;  // a Draco stream; empty when no triangle is left to it
+  std::vector<Weld> welds;
+  bool has_normals = false;
+  bool has_colors = false;
+  std::vector<LooseVertex> loose_vertices;
+  std::vector<std::array<std::uint32_t, 3>> loose_triangles;  // vertices of triangles that Draco drops
+  std::vector<std::uint32_t> harmonics;                       // per component, each at least 1
+  std::uint32_t samples_per_harmonic = 0;                     // 0: exact harmonics (spec.md 6.4)
+  std::array<float, 2> fingerprint = {};                      // of the basis (spec.md 6.6)
+  std::vector<std::uint32_t> order;  // per vertex its index in the input; empty when the input's order is not kept
+};
+
+std::vector<std::uint8_t> WriteIFrame(const IFrameSyntax& syntax, const SequenceHeader& header);
+
+// kCorrupt for a rule of spec.md 5.
+Status ParseIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& header, IFrameSyntax& syntax);
+
+}  // namespace sac

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstdint>
+
+#include "format/range_coder.h"
+
+namespace sac {
+
+// Adaptive Exp-Golomb code of an unsigned integer below 2^31 (spec.md 7.3): the number of bits of value + 1 in unary,
+// each step with its own model, then the bits below the leading one as they are.
+struct UnsignedModels {
+  std::array<BitModel, 32> prefix;
+};
+
+template <class Coder>
+void CodeUnsigned(Coder& coder, UnsignedModels& models, std::uint32_t& value) {
+  int width = 0;
+  if constexpr (!Coder::kDecodes) {
+    while (((value + 1) >> (width + 1)) != 0) ++width;
+  }
+  for (int i = 0; i < 31; ++i) {
+    bool more = i < width;
+    coder.Bit(models.prefix[static_cast<std::size_t>(i)], more);
+    if (!more) break;
+    if constexpr (Coder::kDecodes) width = i + 1;
+  }
+  std::uint32_t low = (value + 1) & ((1u << width) - 1);
+  coder.Raw(low, width);
+  if constexpr (Coder::kDecodes) value = ((1u << width) | low) - 1;
+}
+
+// A signed integer of magnitude below 2^31: a zero flag, the sign as it is, the magnitude minus one.
+struct SignedModels {
+  BitModel nonzero;
+  UnsignedModels magnitude;
+};
+
+template <class Coder>
+void CodeSigned(Coder& coder, SignedModels& models, std::int32_t& value) {
+  bool nonzero = value != 0;
+  coder.Bit(models.nonzero, nonzero);
+  if (!nonzero) {
+    value = 0;
+    return;
+  }
+  std::uint32_t negative = value < 0;
+  coder.Raw(negative, 1);
+  std::uint32_t magnitude = static_cast<std::uint32_t>(value < 0 ? -static_cast<std::int64_t>(value) : value) - 1;
+  CodeUnsigned(coder, models.magnitude, magnitude);
+  if constexpr (Coder::kDecodes) {
+    const auto m = static_cast<std::int64_t>(std::min(magnitude, 0x7ffffffeu)) + 1;
+    value = static_cast<std::int32_t>(negative ? -m : m);
+  }
+}
+
+}  // namespace sac

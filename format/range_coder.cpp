@@ -1,0 +1,127 @@
+#include "format/range_coder.h"
+
+#include <algorithm>
+#include <array>
+
+namespace sac {
+namespace {
+
+constexpr std::uint32_t kTop = 1u << 24;
+constexpr std::uint32_t kYoung = 127;  // from this count on both rates are constant
+
+// spec.md 7.2: the n-th bin moves an estimator by 1 / (n + 1.5), but at least by its own rate.
+constexpr std::array<std::uint32_t, kYoung + 1> Rates(std::uint32_t floor) {
+  std::array<std::uint32_t, kYoung + 1> rates{};
+  for (std::uint32_t n = 0; n <= kYoung; ++n) rates[n] = std::max(131072 / (2 * n + 3), floor);
+  return rates;
+}
+constexpr auto kFast = Rates(4096);  // 1/16
+constexpr auto kSlow = Rates(512);   // 1/128
+
+}  // namespace
+
+void BitModel::Update(bool bit) {
+  // All values are below 2^16 and all rates below 2^16, so the products fit 32 bits.
+  if (bit) {
+    fast_ += ((65535 - fast_) * kFast[count_]) >> 16;
+    slow_ += ((65535 - slow_) * kSlow[count_]) >> 16;
+  } else {
+    fast_ -= (fast_ * kFast[count_]) >> 16;
+    slow_ -= (slow_ * kSlow[count_]) >> 16;
+  }
+  if (count_ < kYoung) ++count_;
+}
+
+void RangeEncoder::Narrow(std::uint32_t offset, std::uint32_t range) {
+  const std::uint32_t before = low_;
+  low_ += offset;
+  range_ = range;
+  if (low_ < before) {  // carry into the bytes already written
+    for (std::size_t i = bytes_.size(); i-- > 0;) {
+      if (++bytes_[i] != 0) break;
+    }
+  }
+  while (range_ < kTop) {
+    bytes_.push_back(static_cast<std::uint8_t>(low_ >> 24));
+    low_ <<= 8;
+    range_ <<= 8;
+  }
+}
+
+void RangeEncoder::Bit(BitModel& model, bool& bit) {
+  const std::uint32_t bound = (range_ >> 15) * model.probability();
+  if (bit) {
+    Narrow(0, bound);
+  } else {
+    Narrow(bound, range_ - bound);
+  }
+  model.Update(bit);
+}
+
+void RangeEncoder::Raw(std::uint32_t& value, int count) {
+  for (int i = count - 1; i >= 0; --i) {
+    const std::uint32_t half = range_ >> 1;
+    if ((value >> i) & 1) {
+      Narrow(0, half);
+    } else {
+      Narrow(half, range_ - half);
+    }
+  }
+}
+
+std::vector<std::uint8_t> RangeEncoder::Finish() {
+  // Any number in [low, low + range) will do: the one with the most trailing zero bits leaves out the most bytes.
+  const std::uint64_t end = static_cast<std::uint64_t>(low_) + range_;
+  std::uint64_t value = low_;
+  for (int bits = 32; bits >= 0; --bits) {
+    const std::uint64_t unit = std::uint64_t{1} << bits;
+    value = (low_ + unit - 1) / unit * unit;
+    if (value < end) break;
+  }
+  Narrow(static_cast<std::uint32_t>(value - low_), range_);
+  for (int shift = 24; shift >= 0; shift -= 8) bytes_.push_back(static_cast<std::uint8_t>(low_ >> shift));
+  while (!bytes_.empty() && bytes_.back() == 0) bytes_.pop_back();
+  return std::move(bytes_);
+}
+
+RangeDecoder::RangeDecoder(std::span<const std::uint8_t> bytes) : bytes_(bytes) {
+  for (int i = 0; i < 4; ++i) code_ = (code_ << 8) | Next();
+}
+
+void RangeDecoder::Normalize() {
+  while (range_ < kTop) {
+    code_ = (code_ << 8) | Next();
+    range_ <<= 8;
+  }
+}
+
+void RangeDecoder::Bit(BitModel& model, bool& bit) {
+  const std::uint32_t bound = (range_ >> 15) * model.probability();
+  bit = code_ < bound;
+  if (bit) {
+    range_ = bound;
+  } else {
+    code_ -= bound;
+    range_ -= bound;
+  }
+  Normalize();
+  model.Update(bit);
+}
+
+void RangeDecoder::Raw(std::uint32_t& value, int count) {
+  value = 0;
+  for (int i = 0; i < count; ++i) {
+    const std::uint32_t half = range_ >> 1;
+    const bool bit = code_ < half;
+    if (bit) {
+      range_ = half;
+    } else {
+      code_ -= half;
+      range_ -= half;
+    }
+    Normalize();
+    value = (value << 1) | static_cast<std::uint32_t>(bit);
+  }
+}
+
+}  // namespace sac

@@ -1,0 +1,63 @@
+#include "format/sequence_header.h"
+
+#include <cmath>
+#include <string>
+
+namespace sac {
+namespace {
+
+struct FieldWriter {
+  ByteWriter out;
+  void operator()(const char*, const std::uint8_t& v) { out.U8(v); }
+  void operator()(const char*, const std::uint32_t& v) { out.Varint(v); }
+  void operator()(const char*, const float& v) { out.F32(v); }
+};
+
+struct FieldReader {
+  ByteReader in;
+  void operator()(const char*, std::uint8_t& v) { v = in.U8(); }
+  void operator()(const char*, std::uint32_t& v) { v = in.Varint(); }
+  void operator()(const char*, float& v) { v = in.F32(); }
+};
+
+Status Exceeds(const char* what, std::uint64_t value, std::uint64_t limit) {
+  return Status::Limit(std::to_string(value) + " " + what + ", the limit is " + std::to_string(limit));
+}
+
+}  // namespace
+
+std::vector<std::uint8_t> WriteSequenceHeader(const SequenceHeader& header) {
+  FieldWriter writer;
+  VisitFields(header, writer);
+  return std::move(writer.out.bytes());
+}
+
+Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& limits, SequenceHeader& header) {
+  // The version decides what the rest means, so it is judged before the length.
+  if (payload.size() >= 2 && (payload[0] != kVersionMajor || payload[1] != kVersionMinor)) {
+    return Status::Unsupported("format version " + std::to_string(payload[0]) + "." + std::to_string(payload[1]) +
+                               ", this decoder reads " + std::to_string(kVersionMajor) + "." +
+                               std::to_string(kVersionMinor));
+  }
+  FieldReader reader{ByteReader(payload)};
+  VisitFields(header, reader);
+  if (!reader.in.ok() || reader.in.remaining() != 0) return Status::Corrupt("sequence header: wrong length");
+  if (header.reference_shape > 1) return Status::Corrupt("sequence header: unknown reference shape");
+  if (header.position_bits < 1 || header.position_bits > 24) return Status::Corrupt("sequence header: position bits");
+  if (header.vertices == 0) return Status::Corrupt("sequence header: no vertices");
+  if (header.harmonics == 0) return Status::Corrupt("sequence header: no harmonics");
+  if (header.harmonics > header.vertices) return Status::Corrupt("sequence header: more harmonics than vertices");
+  if (header.frame_rate_denominator == 0) return Status::Corrupt("sequence header: frame rate");
+  for (const float v : {header.origin_x, header.origin_y, header.origin_z}) {
+    if (!std::isfinite(v)) return Status::Corrupt("sequence header: origin is not finite");
+  }
+  for (const float v : {header.cell, header.motion_step, header.displacement_step, header.rotation_step,
+                        header.translation_step}) {
+    if (!std::isfinite(v) || v <= 0) return Status::Corrupt("sequence header: a step is not positive");
+  }
+  if (header.vertices > limits.vertices) return Exceeds("vertices", header.vertices, limits.vertices);
+  if (header.triangles > limits.triangles) return Exceeds("triangles", header.triangles, limits.triangles);
+  return Status::Ok();
+}
+
+}  // namespace sac

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "format/bytes.h"
+#include "format/limits.h"
+#include "format/status.h"
+
+namespace sac {
+
+inline constexpr std::uint8_t kVersionMajor = 0;
+inline constexpr std::uint8_t kVersionMinor = 1;
+
+// What a group's fields are measured against (spec.md 4).
+enum class ReferenceShape : std::uint8_t {
+  kKey = 0,       // the decoded I-frame
+  kPrevious = 1,  // the reconstruction of the frame before, as published (Wang et al. 2015)
+};
+
+// The sequence header, in the order of the bitstream (spec.md 4). Steps are finite and positive.
+struct SequenceHeader {
+  std::uint8_t version_major = kVersionMajor;
+  std::uint8_t version_minor = kVersionMinor;
+  std::uint8_t reference_shape = 0;  // ReferenceShape
+  std::uint8_t position_bits = 10;   // of the position grid, 1..24
+  std::uint32_t vertices = 0;
+  std::uint32_t triangles = 0;
+  std::uint32_t harmonics = 0;  // over all components
+  std::uint32_t frame_rate_numerator = 0;  // 0: unknown
+  std::uint32_t frame_rate_denominator = 1;
+  float origin_x = 0;  // of the position grid, model units
+  float origin_y = 0;
+  float origin_z = 0;
+  float cell = 1;               // of the position grid, model units
+  float motion_step = 0;        // radians (rotation), strain (stretch)
+  float displacement_step = 0;  // model units
+  float rotation_step = 0;      // of the rigid motion, radians
+  float translation_step = 0;   // of the rigid motion, model units
+
+  double frames_per_second() const {
+    return static_cast<double>(frame_rate_numerator) / static_cast<double>(frame_rate_denominator);
+  }
+};
+
+// The one list of fields: reading, writing and printing all walk it.
+template <class Header, class Visitor>
+void VisitFields(Header& h, Visitor&& visit) {
+  visit("version_major", h.version_major);
+  visit("version_minor", h.version_minor);
+  visit("reference_shape", h.reference_shape);
+  visit("position_bits", h.position_bits);
+  visit("vertices", h.vertices);
+  visit("triangles", h.triangles);
+  visit("harmonics", h.harmonics);
+  visit("frame_rate_numerator", h.frame_rate_numerator);
+  visit("frame_rate_denominator", h.frame_rate_denominator);
+  visit("origin_x", h.origin_x);
+  visit("origin_y", h.origin_y);
+  visit("origin_z", h.origin_z);
+  visit("cell", h.cell);
+  visit("motion_step", h.motion_step);
+  visit("displacement_step", h.displacement_step);
+  visit("rotation_step", h.rotation_step);
+  visit("translation_step", h.translation_step);
+}
+
+// The payload of a header packet: u8 as one byte, u32 as varints, floats as four bytes.
+std::vector<std::uint8_t> WriteSequenceHeader(const SequenceHeader& header);
+
+// Parses and checks every field. kUnsupported for another version, kCorrupt for a rule of spec.md 4, kLimit beyond
+// `limits`.
+Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& limits, SequenceHeader& header);
+
+}  // namespace sac
