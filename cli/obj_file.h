@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "codec/mesh.h"
+#include "format/status.h"
+
+namespace sac {
+
+// Wavefront OBJ, read and written here and not by OpenMesh. Its reader drops degenerate triangles and every vertex it
+// cannot parse (which shifts all later indices), aborts on `f /1`, gives colours only to vertices that a face uses, and
+// opens the material files a mesh names; its writer has no vertex colours and looks corner UVs up by vertex, so
+// a degenerate triangle loses one.
+
+// Parses the text of an OBJ file: v (with an optional colour: r g b, or r g b a), vt, vn and f; other statements are
+// skipped. Polygons become fans. A vertex takes the normal of the first corner that names one. Messages are of the form
+// "line 12: ..." and do not name the file.
+Status ParseObj(std::string_view text, Mesh& mesh);
+
+// The text of an OBJ file; every float is written with the digits that bring back the identical float32.
+std::string FormatObj(const Mesh& mesh);
+
+}  // namespace sac
