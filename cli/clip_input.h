@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/cache_file.h"
+#include "codec/mesh.h"
+#include "format/status.h"
+
+namespace sac {
+
+// The encoder's input: the frames of a clip one after the other, each with the vertices of the first and finite.
+// Memory is one frame, whatever their number. Every message starts with the path of the file at fault.
+class ClipInput {
+ public:
+  // `arguments` are `mesh.EXT cache.pc2|.mdd`, or one or several mesh files, or one pattern such as `frame_%04d.ply`
+  // (see FramePattern; an existing file of that very name comes first). Reads the first frame.
+  static Status Open(const std::vector<std::string>& arguments, std::unique_ptr<ClipInput>& input);
+
+  // The first frame: triangles and attributes of the (first) mesh file; with a cache, the positions are the cache's.
+  const Mesh& mesh() const { return mesh_; }
+
+  // Where the input says so: an MDD does, other inputs do not.
+  std::optional<double> fps() const;
+
+  // At least 1.
+  std::uint32_t frame_count() const;
+
+  // Reads the next frame, beginning with the first; `end` is set, and `frame` left alone, after the last.
+  // kInvalidArgument: another number of vertices, other triangles, or a coordinate that is NaN or infinite.
+  Status Next(Positions& frame, bool& end);
+
+  // Begins again with the first frame.
+  void Rewind() { next_ = 0; }
+
+ private:
+  Status OpenCache(const std::string& mesh_path, const std::string& cache_path);
+  Status OpenSequence();
+
+  Mesh mesh_;
+  std::vector<std::string> paths_;  // of a sequence
+  std::unique_ptr<CacheReader> cache_;
+  std::uint32_t next_ = 0;
+};
+
+}  // namespace sac
