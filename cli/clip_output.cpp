@@ -1,0 +1,68 @@
+#include "cli/clip_output.h"
+
+#include <filesystem>
+#include <utility>
+
+#include "cli/mesh_file.h"
+
+namespace sac {
+
+bool ClipOutput::IsClipName(const std::string& path) { return IsCacheName(path) || IsWritableMeshName(path); }
+
+Status ClipOutput::Open(const std::string& path, const Mesh& mesh, const Settings& settings,
+                        std::unique_ptr<ClipOutput>& output) {
+  if (!IsClipName(path)) {
+    return Status::InvalidArgument(path + ": not a clip by its name (.pc2, .mdd, or a pattern of .obj, .ply or .off)");
+  }
+  auto opened = std::make_unique<ClipOutput>();
+  opened->path_ = path;
+  opened->mesh_ = mesh;
+  if (IsCacheName(path)) {
+    SAC_RETURN_IF_ERROR(
+        CacheWriter::Open(path, mesh.positions.size(), settings.fps, settings.frame_count, opened->cache_));
+  } else if (FramePattern::IsPattern(path)) {
+    SAC_RETURN_IF_ERROR(FramePattern::Parse(path, opened->pattern_.emplace()));
+  }
+  output = std::move(opened);
+  return Status::Ok();
+}
+
+Status ClipOutput::WriteMeshFile(const std::string& path, const Positions& positions) {
+  mesh_.positions = positions;
+  std::string bytes;
+  SAC_RETURN_IF_ERROR(FormatMesh(path, mesh_, bytes));
+  OutputFile file;
+  SAC_RETURN_IF_ERROR(file.Open(path));
+  SAC_RETURN_IF_ERROR(file.Write(bytes));
+  SAC_RETURN_IF_ERROR(file.Close());
+  mesh_files_.push_back(std::move(file));
+  return Status::Ok();
+}
+
+Status ClipOutput::Write(std::uint64_t number, const Positions& positions) {
+  if (positions.size() != mesh_.positions.size()) {
+    return Status::InvalidArgument(path_ + ": a frame of " + std::to_string(positions.size()) + " vertices, not " +
+                                   std::to_string(mesh_.positions.size()));
+  }
+  if (pattern_) return WriteMeshFile(pattern_->Path(number), positions);
+  if (!cache_) {
+    if (!mesh_files_.empty()) {
+      return Status::InvalidArgument(path_ + ": more than one frame needs a cache or a pattern such as x_%04d.obj");
+    }
+    return WriteMeshFile(path_, positions);
+  }
+  if (mesh_files_.empty()) {
+    SAC_RETURN_IF_ERROR(WriteMeshFile(std::filesystem::path(path_).replace_extension(".obj").string(), positions));
+  }
+  return cache_->Write(positions);
+}
+
+Status ClipOutput::Commit() {
+  if (mesh_files_.empty()) return Status::InvalidArgument(path_ + ": no frames");
+  // The cache first: its last write may still find the disk full, the mesh files are closed.
+  if (cache_) SAC_RETURN_IF_ERROR(cache_->Commit());
+  for (OutputFile& file : mesh_files_) SAC_RETURN_IF_ERROR(file.Commit());
+  return Status::Ok();
+}
+
+}  // namespace sac

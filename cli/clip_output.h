@@ -1,0 +1,51 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/cache_file.h"
+#include "cli/frame_pattern.h"
+#include "cli/output_file.h"
+#include "codec/mesh.h"
+#include "format/status.h"
+
+namespace sac {
+
+// The decoder's output: a cache x.pc2 or x.mdd with the mesh beside it as x.obj, or mesh files under a pattern such as
+// x_%04d.obj (.ply, .off), or a single mesh file for a single frame. Nothing stands under a final name before Commit;
+// what was written is removed if that does not come. Every message starts with the path of the file at fault.
+class ClipOutput {
+ public:
+  struct Settings {
+    double fps = 24;                           // frames a second, for the times of an MDD
+    std::optional<std::uint32_t> frame_count;  // where known; see CacheWriter::Open
+  };
+
+  // True if `path` is, by its name, a clip output.
+  static bool IsClipName(const std::string& path);
+
+  // `mesh` gives triangles and attributes; only the number of its positions matters.
+  static Status Open(const std::string& path, const Mesh& mesh, const Settings& settings,
+                     std::unique_ptr<ClipOutput>& output);
+
+  // Appends a frame. `number` names its file in a sequence; a cache has no numbers. Normals are those of the mesh, for
+  // every frame.
+  Status Write(std::uint64_t number, const Positions& positions);
+
+  // Gives all files their names. kInvalidArgument if there was no frame.
+  Status Commit();
+
+ private:
+  Status WriteMeshFile(const std::string& path, const Positions& positions);
+
+  std::string path_;
+  Mesh mesh_;
+  std::optional<FramePattern> pattern_;
+  std::unique_ptr<CacheWriter> cache_;
+  std::vector<OutputFile> mesh_files_;  // written and closed, under temporary names
+};
+
+}  // namespace sac

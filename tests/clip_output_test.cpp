@@ -1,0 +1,212 @@
+#include "cli/clip_output.h"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/stat.h>
+
+#include <csignal>
+
+#include "cli/clip_input.h"
+#include "cli/mesh_file.h"
+#include "tests/temporary_directory.h"
+
+namespace sac {
+namespace {
+
+// While it lives a file cannot grow beyond `bytes`; the write fails with EFBIG, much as on a full disk.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) : handler_(std::signal(SIGXFSZ, SIG_IGN)) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit = {bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  ~FileSizeLimit() {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, handler_);
+  }
+
+ private:
+  rlimit before_{};
+  void (*handler_)(int);
+};
+
+class ClipOutputTest : public testing::Test {
+ protected:
+  ClipOutputTest() {
+    mesh_.positions = Positions(3);
+    mesh_.triangles = {{0, 1, 2}, {0, 0, 1}};
+    mesh_.uvs = {{0, 0}, {1, 0}};
+    mesh_.uv_triangles = {{0, 1, 0}, {1, 1, 0}};
+    mesh_.colors = {{1, 2, 3, 4}, {5, 6, 7, 8}, {9, 0, 1, 2}};
+  }
+
+  static Positions Frame(float x) { return {{x, 0, 0}, {0, x, 0}, {0, 0, 1 / x}}; }
+
+  TemporaryDirectory directory_;
+  Mesh mesh_;
+  std::unique_ptr<ClipOutput> output_;
+};
+
+TEST_F(ClipOutputTest, CacheWithItsMesh) {
+  for (const std::string name : {"a.pc2", "b.mdd"}) {
+    const std::string path = directory_.Path(name), obj = directory_.Path(name.substr(0, 1) + ".obj");
+    ASSERT_TRUE(ClipOutput::Open(path, mesh_, {30, std::nullopt}, output_).ok());
+    ASSERT_TRUE(output_->Write(5, Frame(3)).ok());
+    ASSERT_TRUE(output_->Write(6, Frame(7)).ok());
+    EXPECT_FALSE(std::filesystem::exists(path) || std::filesystem::exists(obj));
+    ASSERT_TRUE(output_->Commit().ok());
+    std::unique_ptr<ClipInput> input;
+    ASSERT_TRUE(ClipInput::Open({obj, path}, input).ok());
+    EXPECT_EQ(input->frame_count(), 2U);
+    Mesh mesh;
+    ASSERT_TRUE(ReadMesh(obj, mesh).ok());
+    EXPECT_EQ(mesh.positions, Frame(3));
+    EXPECT_EQ(mesh.triangles, mesh_.triangles);
+    EXPECT_EQ(mesh.uv_triangles, mesh_.uv_triangles);
+    EXPECT_EQ(mesh.colors, mesh_.colors);
+  }
+  EXPECT_EQ(directory_.FileCount(), 4U);
+}
+
+TEST_F(ClipOutputTest, SequenceIsNumberedByFrames) {
+  for (const std::string extension : {"obj", "ply", "off"}) {
+    ASSERT_TRUE(ClipOutput::Open(directory_.Path("x_%04d." + extension), mesh_, {}, output_).ok());
+    ASSERT_TRUE(output_->Write(9, Frame(3)).ok());
+    ASSERT_TRUE(output_->Write(10, Frame(7)).ok());
+    ASSERT_TRUE(output_->Commit().ok());
+    Mesh mesh;
+    ASSERT_TRUE(ReadMesh(directory_.Path("x_0009." + extension), mesh).ok());
+    EXPECT_EQ(mesh.positions, Frame(3));
+    ASSERT_TRUE(ReadMesh(directory_.Path("x_0010." + extension), mesh).ok());
+    EXPECT_EQ(mesh.positions, Frame(7));
+    EXPECT_EQ(mesh.triangles, mesh_.triangles);
+  }
+  EXPECT_EQ(directory_.FileCount(), 6U);
+}
+
+TEST_F(ClipOutputTest, NothingStaysWithoutCommit) {
+  directory_.Write("a.obj", "before");
+  for (const std::string name : {"a.pc2", "a.mdd", "x_%d.ply", "a.obj"}) {
+    ASSERT_TRUE(ClipOutput::Open(directory_.Path(name), mesh_, {}, output_).ok());
+    ASSERT_TRUE(output_->Write(0, Frame(1)).ok());
+    EXPECT_GT(directory_.FileCount(), 1U);
+    output_.reset();
+    EXPECT_EQ(directory_.FileCount(), 1U) << name;
+    EXPECT_EQ(directory_.Read("a.obj"), "before");
+  }
+}
+
+TEST_F(ClipOutputTest, Errors) {
+  const auto open = [&](const std::string& name) {
+    const std::string message = ClipOutput::Open(directory_.Path(name), mesh_, {}, output_).message();
+    return message.empty() ? "" : message.substr(directory_.Path("").size());
+  };
+  EXPECT_EQ(open("a.txt"), "a.txt: not a clip by its name (.pc2, .mdd, or a pattern of .obj, .ply or .off)");
+  EXPECT_EQ(open("-"), "-: not a clip by its name (.pc2, .mdd, or a pattern of .obj, .ply or .off)");
+  EXPECT_EQ(open("%d%d.obj"), "%d%d.obj: more than one frame number");
+  EXPECT_EQ(open("none/a.pc2"), "none/a.pc2: No such file or directory");
+  ASSERT_EQ(open("a.pc2"), "");
+  EXPECT_EQ(output_->Commit().message(), directory_.Path("a.pc2") + ": no frames");
+  EXPECT_EQ(output_->Write(0, Positions(2)).message(), directory_.Path("a.pc2") + ": a frame of 2 vertices, not 3");
+  ASSERT_EQ(open("a.obj"), "");
+  ASSERT_TRUE(output_->Write(0, Frame(1)).ok());
+  EXPECT_EQ(output_->Write(1, Frame(2)).code(), StatusCode::kInvalidArgument);
+  ASSERT_EQ(open("none/%d.obj"), "");
+  EXPECT_EQ(output_->Write(3, Frame(1)).message(), directory_.Path("none/3.obj") + ": No such file or directory");
+}
+
+TEST_F(ClipOutputTest, AFullDiskIsOneErrorAndLeavesNothing) {
+  mesh_.positions.resize(10000);
+  mesh_.colors.clear();
+  for (const std::string name : {"a.pc2", "a.mdd", "x_%d.ply"}) {
+    ASSERT_TRUE(ClipOutput::Open(directory_.Path(name), mesh_, {}, output_).ok());
+    Status status;
+    {
+      const FileSizeLimit limit(100000);
+      status = output_->Write(0, Positions(10000));
+    }
+    EXPECT_EQ(status.code(), StatusCode::kIoError) << name;
+    EXPECT_NE(status.message().find(": File too large"), std::string::npos) << status.message();
+    EXPECT_EQ(status.message().find(directory_.Path("")), 0U);
+    output_.reset();
+    EXPECT_EQ(directory_.FileCount(), 0U);
+  }
+}
+
+TEST(OutputFileTest, AppearsWithCommitAndKeepsTheMode) {
+  const TemporaryDirectory directory;
+  const std::string path = directory.Write("target", "old");
+  chmod(path.c_str(), 0640);
+  std::filesystem::create_symlink("target", directory.Path("link"));
+  OutputFile file;
+  ASSERT_TRUE(file.Open(directory.Path("link")).ok());
+  ASSERT_TRUE(file.Write(std::string(200000, 'x')).ok());
+  ASSERT_TRUE(file.Write("end").ok());
+  ASSERT_TRUE(file.WriteAt(1, "yz", 2).ok());
+  char back[3] = {};
+  ASSERT_TRUE(file.ReadAt(200000, back, 3).ok());
+  EXPECT_EQ(std::string(back, 3), "end");
+  EXPECT_EQ(directory.Read("target"), "old");
+  ASSERT_TRUE(file.Commit().ok());
+  EXPECT_EQ(directory.Read("target"), "xyz" + std::string(199997, 'x') + "end");
+  EXPECT_TRUE(std::filesystem::is_symlink(directory.Path("link")));
+  struct stat info {};
+  stat(path.c_str(), &info);
+  EXPECT_EQ(info.st_mode & 07777, 0640U);
+  EXPECT_EQ(directory.FileCount(), 2U);
+}
+
+TEST(OutputFileTest, MovedFilesKeepTheirTemporary) {
+  const TemporaryDirectory directory;
+  std::vector<OutputFile> files;
+  for (int i = 0; i < 10; ++i) {
+    OutputFile file;
+    ASSERT_TRUE(file.Open(directory.Path(std::to_string(i))).ok());
+    ASSERT_TRUE(file.Write("x").ok());
+    files.push_back(std::move(file));
+  }
+  EXPECT_EQ(directory.FileCount(), 10U);
+  ASSERT_TRUE(files[3].Commit().ok());
+  files.clear();
+  EXPECT_EQ(directory.FileCount(), 1U);
+  EXPECT_EQ(directory.Read("3"), "x");
+}
+
+TEST(OutputFileTest, DevicesAreWrittenThrough) {
+  OutputFile null;
+  ASSERT_TRUE(null.Open("/dev/null").ok());
+  EXPECT_FALSE(null.seekable());
+  EXPECT_TRUE(null.Write("x").ok());
+  EXPECT_TRUE(null.Commit().ok());
+  EXPECT_TRUE(std::filesystem::is_character_file("/dev/null"));
+  OutputFile full;
+  ASSERT_TRUE(full.Open("/dev/full").ok());
+  const Status status = full.Write("x");
+  EXPECT_EQ(status.code(), StatusCode::kIoError);
+  EXPECT_EQ(status.message(), "/dev/full: No space left on device");
+}
+
+TEST(OutputFileTest, StandardOutput) {
+  testing::internal::CaptureStdout();
+  {
+    OutputFile file;
+    ASSERT_TRUE(file.Open("-").ok());
+    ASSERT_TRUE(file.Write("bytes").ok());
+    ASSERT_TRUE(file.Commit().ok());
+  }
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "bytes");
+  EXPECT_FALSE(std::filesystem::exists("-"));
+}
+
+TEST(OutputFileTest, Errors) {
+  const TemporaryDirectory directory;
+  EXPECT_EQ(OutputFile().Open(directory.Path("")).message(), directory.Path("") + ": Is a directory");
+  OutputFile closed;
+  ASSERT_TRUE(closed.Open(directory.Path("a")).ok());
+  ASSERT_TRUE(closed.Close().ok());
+  EXPECT_EQ(closed.Write("x").code(), StatusCode::kIoError);
+}
+
+}  // namespace
+}  // namespace sac
