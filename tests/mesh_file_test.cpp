@@ -126,7 +126,7 @@ TEST_F(MeshFileTest, PolygonsBecomeFans) {
 TEST_F(MeshFileTest, ObjSyntax) {
   // CRLF, negative and forward indices, continued lines, unknown statements, comments, "+", a missing final line end.
   const Mesh mesh = Read("a.obj",
-                         "# c \\\r\nmtllib /dev/zero\r\nv +1 2e0 .5 \r\nv 0 0 0\r\n\r\nf -2 -1 3 # c\r\n  v 0 0 1\r\n"
+                         "mtllib /dev/zero\r\n# c \\\r\nv +1 2e0 .5 \r\nv 0 0 0\r\n\r\nf -2 -1 3 # c\r\n  v 0 0 1\r\n"
                          "usemtl x\r\nf 1 2\\\r\n 3\r\nf 1/ 2/ 3/");
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 1, 2}, {0, 1, 2}, {0, 1, 2}}));
   EXPECT_EQ(mesh.positions[0], (Vec3f{1, 2, 0.5F}));
@@ -300,6 +300,8 @@ TEST_F(MeshFileTest, DamagedOmFails) {
     // Cut between two chunks it is a mesh of less, but never one with bad indices.
     EXPECT_TRUE(!status.ok() || mesh.triangles.empty()) << size;
   }
+  EXPECT_EQ(Error("a.om", om.substr(0, 40)), "a.om: truncated");
+  EXPECT_EQ(Error("a.om", om.substr(0, 15)), "a.om: not an OM file");
   std::mt19937 random(1);
   for (int round = 0; round < 2000; ++round) {
     std::string damaged = om;
