@@ -1,13 +1,15 @@
 #include "codec/harmonics.h"
 
-#include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
 #include <Spectra/SymEigsShiftSolver.h>
 
+#include <Eigen/Eigenvalues>
+#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <string>
 
+#include "codec/radial_functions.h"
 
 namespace sac {
 namespace {
@@ -16,100 +18,144 @@ constexpr double kInhomogeneity = 0.1;
 constexpr std::uint32_t kDenseSize = 96;  // up to here all eigenpairs at once are as quick as the wanted ones
 
 // A fixed generic cubic of the coordinates scaled to [0, 1], within [-1, 1] (spec.md 6.4.2).
-double GenericCubic(const Eigen::Vector3d& p) {
+double GenericCubic(const Eigen::Array3d& p) {
   const double x = p[0], y = p[1], z = p[2];
-  return 0.31 * x - 0.23 * y + 0.17 * z + 0.19 * x * y - 0.29 * y * z + 0.13 * z * x + 0.11 * x * x * y - 0.07 * y * y * z +
-         0.05 * z * z * x + 0.21 * x * x - 0.15 * z * z + 0.09 * y * y * y;
+  return 0.31 * x - 0.23 * y + 0.17 * z + 0.19 * x * y - 0.29 * y * z + 0.13 * z * x + 0.11 * x * x * y -
+         0.07 * y * y * z + 0.05 * z * z * x + 0.21 * x * x - 0.15 * z * z + 0.09 * y * y * y;
 }
 
 // A fixed generic number in [-1, 1) for each index (spec.md 6.4.3).
 double Generic(std::uint32_t i) { return static_cast<double>((i + 1) * 2654435761u) / 2147483648.0 - 1.0; }
 
-// (A - sigma B)^-1 for symmetric A and B = diag(b), as Spectra's operation on D^-1/2 A D^-1/2.
+struct EigenPairs {
+  Eigen::VectorXd values;   // ascending
+  Eigen::MatrixXd vectors;  // one column each, orthonormal
+};
+
+// (A - sigma I)^-1 by a Cholesky solver of A's kind, as Spectra's operation.
+template <class Matrix, class Solver>
 class ShiftSolve {
  public:
   using Scalar = double;
-  ShiftSolve(const Eigen::SparseMatrix<double>& lower, const Eigen::VectorXd& masses)
-      : matrix_(lower), masses_(masses), root_(masses.cwiseSqrt()) {}
+  explicit ShiftSolve(const Matrix& lower) : matrix_(lower) {}
   Eigen::Index rows() const { return matrix_.rows(); }
   Eigen::Index cols() const { return matrix_.cols(); }
   void set_shift(double sigma) {
-    Eigen::SparseMatrix<double> shifted = matrix_;
-    for (Eigen::Index i = 0; i < rows(); ++i) shifted.coeffRef(i, i) -= sigma * masses_[i];
+    Matrix shifted = matrix_;
+    for (Eigen::Index i = 0; i < rows(); ++i) shifted.coeffRef(i, i) -= sigma;
     solver_.compute(shifted);
   }
   void perform_op(const double* in, double* out) const {
-    const Eigen::Map<const Eigen::VectorXd> x(in, rows());
-    Eigen::Map<Eigen::VectorXd> y(out, rows());
-    y = root_.cwiseProduct(solver_.solve(root_.cwiseProduct(x)));
+    Eigen::Map<Eigen::VectorXd>(out, rows()) = solver_.solve(Eigen::Map<const Eigen::VectorXd>(in, rows()));
   }
   bool ok() const { return solver_.info() == Eigen::Success; }
 
  private:
-  const Eigen::SparseMatrix<double>& matrix_;
-  const Eigen::VectorXd& masses_;
-  Eigen::VectorXd root_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver_;
+  const Matrix& matrix_;
+  Solver solver_;
 };
+using SparseShiftSolve =
+    ShiftSolve<Eigen::SparseMatrix<double>, Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower>>;
+using DenseShiftSolve = ShiftSolve<Eigen::MatrixXd, Eigen::LLT<Eigen::MatrixXd>>;
 
-struct EigenPairs {
-  Eigen::VectorXd values;   // ascending
-  Eigen::MatrixXd vectors;  // of A v = lambda B v, B-orthonormal
-};
-
-// The `count` smallest eigenpairs of (A, diag(masses)) with A sparse, positive semidefinite, given by its lower triangle.
-bool SmallestEigenpairs(const Eigen::SparseMatrix<double>& lower, const Eigen::VectorXd& masses, std::uint32_t count,
-                        EigenPairs& out) {
-  const Eigen::VectorXd scale = masses.cwiseSqrt().cwiseInverse();
-  const auto n = static_cast<std::uint32_t>(masses.size());
-  if (n <= kDenseSize || 3 * static_cast<std::uint64_t>(count) > n) {
-    const Eigen::MatrixXd full = Eigen::MatrixXd(lower).selfadjointView<Eigen::Lower>();
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver(scale.asDiagonal() * full * scale.asDiagonal());
+// The `count` smallest eigenpairs of a symmetric, positive semidefinite matrix given by its lower triangle.
+template <class Operation, class Matrix>
+bool SmallestEigenpairs(const Matrix& lower, std::uint32_t count, EigenPairs& out) {
+  const Eigen::Index n = lower.rows(), wanted = count, basis = std::min<Eigen::Index>(2 * wanted + 20, n);
+  if (n <= kDenseSize || basis == n) {
+    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(lower)};
     if (solver.info() != Eigen::Success) return false;
-    out.values = solver.eigenvalues().head(count);
-    out.vectors = scale.asDiagonal() * solver.eigenvectors().leftCols(count);
+    out = {solver.eigenvalues().head(wanted), solver.eigenvectors().leftCols(wanted)};
     return true;
   }
-  // The shift is a small part of the eigenvalues' spacing (Weyl's law for a surface), so that the constant function
-  // does not drown the others.
-  const double shift = -1.0 / masses.sum();
-  ShiftSolve operation(lower, masses);
-  const auto wanted = static_cast<Eigen::Index>(count);
-  Spectra::SymEigsShiftSolver<ShiftSolve> solver(operation, wanted, std::min<Eigen::Index>(2 * wanted + 20, n), shift);
+  // Masses sum to 1 over the mesh, so a shift of -1 is below a surface's spacing of eigenvalues, about 4 pi (Weyl).
+  Operation operation(lower);
+  Spectra::SymEigsShiftSolver<Operation> solver(operation, wanted, basis, -1.0);
   if (!operation.ok()) return false;
   Eigen::VectorXd start(n);
-  for (std::uint32_t i = 0; i < n; ++i) start[i] = Generic(i);
+  for (Eigen::Index i = 0; i < n; ++i) start[i] = Generic(static_cast<std::uint32_t>(i));
   solver.init(start.data());
   solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-13, Spectra::SortRule::SmallestAlge);
   if (solver.info() != Spectra::CompInfo::Successful) return false;
-  out.values = solver.eigenvalues();
-  out.vectors = scale.asDiagonal() * solver.eigenvectors();
+  out = {solver.eigenvalues(), solver.eigenvectors()};
   return true;
+}
+
+// Of L h = lambda D h itself: with h = D^-1/2 y, the eigenpairs of D^-1/2 L D^-1/2.
+bool ExactHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, std::uint32_t count,
+                    EigenPairs& out) {
+  const Eigen::VectorXd scale = mass.cwiseSqrt().cwiseInverse();
+  const Eigen::SparseMatrix<double> scaled = scale.asDiagonal() * laplacian * scale.asDiagonal();
+  if (!SmallestEigenpairs<SparseShiftSolve>(scaled, count, out)) return false;
+  out.vectors = scale.asDiagonal() * out.vectors;
+  return true;
+}
+
+// One step of inverse iteration, Y = (L + D)^-1 D H, and the Ritz vectors of its span: what radial functions mix of
+// parts near in space but far along the surface comes apart.
+bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, EigenPairs& pairs) {
+  Eigen::SparseMatrix<double> shifted = laplacian;
+  for (Eigen::Index i = 0; i < shifted.rows(); ++i) shifted.coeffRef(i, i) += mass[i];
+  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(shifted);
+  if (solver.info() != Eigen::Success) return false;
+  const Eigen::MatrixXd weighted = mass.asDiagonal() * pairs.vectors;
+  const Eigen::MatrixXd image = solver.solve(weighted);
+  // With (L + D) Y = D H, Y^T L Y = Y^T D H - Y^T D Y.
+  const Eigen::MatrixXd gram = image.transpose() * mass.asDiagonal() * image;
+  const Eigen::MatrixXd stiffness = image.transpose() * weighted - gram;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(stiffness, gram);
+  if (ritz.info() != Eigen::Success) return false;
+  pairs = {ritz.eigenvalues(), image * ritz.eigenvectors()};
+  return true;
+}
+
+// Of the same problem within the span of `functions` (Rayleigh-Ritz): S^T L S y = lambda S^T D S y, h = S y.
+bool ReducedHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass,
+                      const Eigen::SparseMatrix<double>& functions, std::uint32_t count, EigenPairs& out) {
+  const Eigen::SparseMatrix<double> image = laplacian.selfadjointView<Eigen::Lower>() * functions;
+  const Eigen::MatrixXd stiffness = functions.transpose() * image;
+  const Eigen::SparseMatrix<double> weighted = mass.asDiagonal() * functions;
+  const Eigen::LLT<Eigen::MatrixXd> gram(Eigen::MatrixXd(functions.transpose() * weighted));
+  if (gram.info() != Eigen::Success) return false;
+  Eigen::MatrixXd standard = gram.matrixL().solve(stiffness).transpose();
+  standard = gram.matrixL().solve(standard).eval();
+  standard = (standard + standard.transpose()).eval() / 2;
+  if (!SmallestEigenpairs<DenseShiftSolve>(standard, count, out)) return false;
+  out.vectors = functions * gram.matrixU().solve(out.vectors).eval();
+  return Refine(laplacian, mass, out);
 }
 
 bool ComputeComponent(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,
                       std::span<const std::array<std::uint32_t, 3>> grid, std::uint32_t count,
                       std::uint32_t samples_per_harmonic, ComponentHarmonics& out) {
   const Component& c = out.component;
+  const auto points = grid.subspan(c.first, c.count);
   // spec.md 6.4.2: weights are stretched unevenly, which splits the multiple eigenvalues of symmetric shapes.
   Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::max()), high = -low;
-  const auto point = [&](std::uint32_t v) { return Eigen::Array3d(grid[v][0], grid[v][1], grid[v][2]); };
-  for (std::uint32_t v = c.first; v < c.first + c.count; ++v) {
-    low = low.min(point(v));
-    high = high.max(point(v));
+  const auto point = [](const std::array<std::uint32_t, 3>& g) { return Eigen::Array3d(g[0], g[1], g[2]); };
+  for (const auto& g : points) {
+    low = low.min(point(g));
+    high = high.max(point(g));
   }
   const double extent = std::max(1.0, (high - low).maxCoeff());
-  std::vector<double> uneven(weights.begin(), weights.end());
-  const auto begin = std::lower_bound(edges.ends.begin(), edges.ends.end(), std::array<std::uint32_t, 2>{c.first, 0});
-  for (auto e = begin; e != edges.ends.end() && (*e)[0] < c.first + c.count; ++e) {
-    const Eigen::Vector3d middle = ((point((*e)[0]) + point((*e)[1])) / 2 - low) / extent;
-    uneven[static_cast<std::size_t>(e - edges.ends.begin())] *= 1 + kInhomogeneity * GenericCubic(middle);
+  const EdgeRange range = EdgesOf(edges, c.first, c.count);
+  const auto ends = std::span(edges.ends).subspan(range.begin, range.count);
+  std::vector<double> uneven(ends.size());
+  for (std::size_t e = 0; e < ends.size(); ++e) {
+    const Eigen::Array3d middle = (point(grid[ends[e][0]]) + point(grid[ends[e][1]])) / 2;
+    uneven[e] = weights[range.begin + e] * (1 + kInhomogeneity * GenericCubic((middle - low) / extent));
   }
-  const Eigen::SparseMatrix<double> laplacian = LaplacianMatrix(edges, uneven, c.first, c.count);
+  const Eigen::SparseMatrix<double> laplacian = LaplacianMatrix(ends, uneven, c.first, c.count);
   const Eigen::VectorXd mass = masses.segment(c.first, c.count);
-  (void)samples_per_harmonic;
+
+  const std::uint64_t samples = static_cast<std::uint64_t>(samples_per_harmonic) * count;
+  Eigen::SparseMatrix<double> functions;
+  if (samples > 0 && samples < c.count) functions = RadialFunctions(points, static_cast<std::uint32_t>(samples));
   EigenPairs pairs;
-  if (!SmallestEigenpairs(laplacian, mass, count, pairs)) return false;
+  if (!(functions.cols() > 0 ? ReducedHarmonics(laplacian, mass, functions, count, pairs)
+                             : ExactHarmonics(laplacian, mass, count, pairs))) {
+    return false;
+  }
   out.eigenvalues = pairs.values.cwiseMax(0);
   out.vectors = pairs.vectors;
   // The constant function is known exactly.
@@ -133,7 +179,8 @@ std::array<float, 2> HarmonicBasis::Fingerprint() const {
     sum += c.eigenvalues.sum();
     for (Eigen::Index k = 0; k < c.vectors.cols(); ++k) {
       double column = 0;
-      for (Eigen::Index v = 0; v < c.vectors.rows(); ++v) column += Generic(static_cast<std::uint32_t>(7 * v)) * c.vectors(v, k);
+      for (Eigen::Index v = 0; v < c.vectors.rows(); ++v)
+        column += Generic(static_cast<std::uint32_t>(7 * v)) * c.vectors(v, k);
       form += Generic(static_cast<std::uint32_t>(3 * k)) * column / static_cast<double>(c.vectors.rows());
     }
   }

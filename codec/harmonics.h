@@ -30,8 +30,8 @@ struct HarmonicBasis {
 // Whether two fingerprints are of the same basis, as computed by different machines.
 bool SameFingerprint(const std::array<float, 2>& a, const std::array<float, 2>& b);
 
-// Computes the basis as spec.md 6.4 defines it. `grid` holds the vertices' integer positions, `masses` and `weights` are
-// of the decoded first frame. kCorrupt when an eigenvalue problem does not converge.
+// Computes the basis as spec.md 6.4 defines it. `grid` holds the vertices' integer positions, `masses` and `weights`
+// are of the decoded first frame. kCorrupt when an eigenvalue problem does not converge.
 Status ComputeHarmonics(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,
                         std::span<const std::array<std::uint32_t, 3>> grid, std::span<const Component> components,
                         std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic,

@@ -1,7 +1,6 @@
 #include "codec/laplacian.h"
 
 #include <Eigen/Geometry>
-
 #include <algorithm>
 #include <cmath>
 
@@ -25,10 +24,10 @@ EdgeList BuildEdges(std::span<const Triangle> triangles) {
   for (std::size_t j = 0; j < triangles.size(); ++j) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto e = edge(j, k);
-      edges.of_triangle[j][k] = e[0] == e[1] ? EdgeList::kNone
-                                             : static_cast<std::uint32_t>(
-                                                   std::lower_bound(edges.ends.begin(), edges.ends.end(), e) -
-                                                   edges.ends.begin());
+      edges.of_triangle[j][k] =
+          e[0] == e[1] ? EdgeList::kNone
+                       : static_cast<std::uint32_t>(std::lower_bound(edges.ends.begin(), edges.ends.end(), e) -
+                                                    edges.ends.begin());
     }
   }
   return edges;
@@ -67,14 +66,21 @@ Eigen::VectorXd VertexMasses(const PositionMatrix& positions, std::span<const Tr
   return masses / masses.sum();
 }
 
-Eigen::SparseMatrix<double> LaplacianMatrix(const EdgeList& edges, std::span<const double> weights, std::uint32_t first,
-                                            std::uint32_t count) {
+EdgeRange EdgesOf(const EdgeList& edges, std::uint32_t first, std::uint32_t count) {
+  const auto at = [&](std::uint32_t v) {
+    return std::lower_bound(edges.ends.begin(), edges.ends.end(), std::array<std::uint32_t, 2>{v, 0});
+  };
+  const auto begin = at(first), end = at(first + count);
+  return {static_cast<std::size_t>(begin - edges.ends.begin()), static_cast<std::size_t>(end - begin)};
+}
+
+Eigen::SparseMatrix<double> LaplacianMatrix(std::span<const std::array<std::uint32_t, 2>> ends,
+                                            std::span<const double> weights, std::uint32_t first, std::uint32_t count) {
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(count);
-  const auto begin = std::lower_bound(edges.ends.begin(), edges.ends.end(), std::array<std::uint32_t, 2>{first, 0});
-  for (auto e = begin; e != edges.ends.end() && (*e)[0] < first + count; ++e) {
-    const double w = weights[static_cast<std::size_t>(e - edges.ends.begin())];
-    const auto a = static_cast<int>((*e)[0] - first), b = static_cast<int>((*e)[1] - first);
+  for (std::size_t e = 0; e < ends.size(); ++e) {
+    const double w = weights[e];
+    const auto a = static_cast<int>(ends[e][0] - first), b = static_cast<int>(ends[e][1] - first);
     entries.emplace_back(b, a, -w);
     diagonal[a] += w;
     diagonal[b] += w;

@@ -16,12 +16,19 @@ using PositionMatrix = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
 // The undirected edges of a triangle mesh, each once, sorted; degenerate triangles' edges included, loops left out.
 struct EdgeList {
-  std::vector<std::array<std::uint32_t, 2>> ends;           // smaller vertex first
-  std::vector<std::array<std::uint32_t, 3>> of_triangle;    // edge opposite corner k of triangle j; kNone for a loop
+  std::vector<std::array<std::uint32_t, 2>> ends;         // smaller vertex first
+  std::vector<std::array<std::uint32_t, 3>> of_triangle;  // edge opposite corner k of triangle j; kNone for a loop
   static constexpr std::uint32_t kNone = 0xffffffffu;
 };
 
 EdgeList BuildEdges(std::span<const Triangle> triangles);
+
+// The edges, as a range of indices, whose smaller vertex is in [first, first + count).
+struct EdgeRange {
+  std::size_t begin;
+  std::size_t count;
+};
+EdgeRange EdgesOf(const EdgeList& edges, std::uint32_t first, std::uint32_t count);
 
 // Cotangent weight of each edge (spec.md 6.4.1): half the sum of the cotangents opposite it, at least kMinWeight, so
 // that every connected component's Laplacian has exactly one zero eigenvalue whatever the triangles are like.
@@ -29,12 +36,13 @@ std::vector<double> CotangentWeights(const PositionMatrix& positions, std::span<
                                      const EdgeList& edges);
 inline constexpr double kMinWeight = 1e-3;
 
-// A third of the areas of the triangles around each vertex, at least a thousandth of the mean; sums to 1 (spec.md 6.4.1).
+// A third of the areas of the triangles around each vertex, at least a thousandth of the mean; sums to 1
+// (spec.md 6.4.1).
 Eigen::VectorXd VertexMasses(const PositionMatrix& positions, std::span<const Triangle> triangles);
 
-// The symmetric matrix with -weights off the diagonal and zero row sums, of the vertices [first, first + count); edges
-// must not leave that range. Lower triangle only.
-Eigen::SparseMatrix<double> LaplacianMatrix(const EdgeList& edges, std::span<const double> weights, std::uint32_t first,
-                                            std::uint32_t count);
+// The symmetric matrix with -weights off the diagonal and zero row sums, of the vertices [first, first + count), whose
+// edges `ends` are. Lower triangle only.
+Eigen::SparseMatrix<double> LaplacianMatrix(std::span<const std::array<std::uint32_t, 2>> ends,
+                                            std::span<const double> weights, std::uint32_t first, std::uint32_t count);
 
 }  // namespace sac

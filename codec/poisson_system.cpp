@@ -9,7 +9,7 @@ PoissonSystem::PoissonSystem(const Shape& shape) : shape_(shape) {}
 bool PoissonSystem::SetReference(const PositionMatrix& reference, std::vector<double> weights) {
   reference_ = reference;
   weights_ = std::move(weights);
-  matrix_ = LaplacianMatrix(shape_.edges, weights_, 0, static_cast<std::uint32_t>(shape_.vertices()));
+  matrix_ = LaplacianMatrix(shape_.edges.ends, weights_, 0, static_cast<std::uint32_t>(shape_.vertices()));
   // Every component is free to move as a whole: tie its first vertex to the origin, Solve() moves it afterwards.
   const double tie = std::max(matrix_.diagonal().mean(), 1.0);
   for (const Component& c : shape_.components) matrix_.coeffRef(c.first, c.first) += tie;

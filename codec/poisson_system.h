@@ -24,7 +24,6 @@ class PoissonSystem {
 
   // The deformed positions. Each component's area-weighted centroid is the reference's.
   const PositionMatrix& Solve(const DeformationGradients& gradients);
-  const PositionMatrix& solution() const { return solution_; }
 
  private:
   const Shape& shape_;

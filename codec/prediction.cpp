@@ -40,8 +40,8 @@ FrameCoefficients Predictor::Predict(bool intra) const {
 
 bool Predictor::Add(const FrameSyntax& frame, FrameCoefficients& out) {
   out = Predict(frame.intra);
-  const bool good =
-      AddInto(out.rigid, frame.rigid) && AddInto(out.motion, frame.motion) && AddInto(out.displacement, frame.displacement);
+  const bool good = AddInto(out.rigid, frame.rigid) && AddInto(out.motion, frame.motion) &&
+                    AddInto(out.displacement, frame.displacement);
   if (!good) return false;
   for (std::size_t i = 0; i < 6; ++i) rigid_velocity_[i] = frame.intra ? 0 : out.rigid[i] - last_.rigid[i];
   last_ = out;

@@ -1,14 +1,36 @@
 #include "codec/reconstruct.h"
 
 #include <algorithm>
+#include <utility>
 
 #include "codec/deformation.h"
 
 namespace sac {
+namespace {
 
-PlaneField::PlaneField(const Shape& shape, int channels, double step)
+// The vertices of the mesh over those of the component, for each harmonic.
+Eigen::ArrayXd ComponentShare(const Shape& shape) {
+  Eigen::ArrayXd share(static_cast<Eigen::Index>(shape.order.size()));
+  for (std::size_t i = 0; i < shape.order.size(); ++i) {
+    share[static_cast<Eigen::Index>(i)] =
+        static_cast<double>(shape.vertices()) / shape.components[shape.order[i].component].count;
+  }
+  return share;
+}
+
+}  // namespace
+
+Eigen::VectorXd MotionSteps(const Shape& shape, const SequenceHeader& header) {
+  return static_cast<double>(header.motion_step) * ComponentShare(shape).sqrt().sqrt();
+}
+
+Eigen::VectorXd DisplacementSteps(const Shape& shape, const SequenceHeader& header) {
+  return static_cast<double>(header.displacement_step) * ComponentShare(shape).sqrt();
+}
+
+PlaneField::PlaneField(const Shape& shape, int channels, Eigen::VectorXd steps)
     : shape_(shape),
-      step_(step),
+      steps_(std::move(steps)),
       held_(shape.order.size() * static_cast<std::size_t>(channels)),
       values_(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(shape.vertices()), channels)) {}
 
@@ -20,13 +42,15 @@ void PlaneField::Reset() {
 const Eigen::MatrixXd& PlaneField::Update(std::span<const std::int32_t> coefficients) {
   const Eigen::Index channels = values_.cols();
   std::size_t i = 0;
+  Eigen::Index row = 0;
   for (const HarmonicIndex& index : shape_.order) {
+    const double step = steps_[row++];
     const ComponentHarmonics& c = shape_.basis.components[index.component];
     for (Eigen::Index channel = 0; channel < channels; ++channel, ++i) {
       const std::int32_t change = coefficients[i] - held_[i];
       if (change == 0) continue;
       held_[i] = coefficients[i];
-      values_.col(channel).segment(c.component.first, c.component.count) += (change * step_) * c.vectors.col(index.k);
+      values_.col(channel).segment(c.component.first, c.component.count) += (change * step) * c.vectors.col(index.k);
     }
   }
   return values_;
@@ -35,8 +59,8 @@ const Eigen::MatrixXd& PlaneField::Update(std::span<const std::int32_t> coeffici
 Reconstructor::Reconstructor(const Shape& shape, const SequenceHeader& header)
     : shape_(shape),
       header_(header),
-      motion_(shape, kMotionChannels, header.motion_step),
-      displacement_(shape, kDisplacementChannels, header.displacement_step),
+      motion_(shape, kMotionChannels, MotionSteps(shape, header)),
+      displacement_(shape, kDisplacementChannels, DisplacementSteps(shape, header)),
       poisson_(shape),
       gradients_(shape.vertices()) {}
 
@@ -58,16 +82,21 @@ bool Reconstructor::StartPredicted() {
 
 const PositionMatrix& Reconstructor::ReconstructMotion(std::span<const std::int32_t> motion) {
   const Eigen::MatrixXd& fields = motion_.Update(motion);
+  if (std::all_of(motion.begin(), motion.end(), [](std::int32_t c) { return c == 0; })) {
+    moved_ = reference();  // exactly, so that what stands still does
+    return moved_;
+  }
   for (Eigen::Index v = 0; v < fields.rows(); ++v) {
     double channels[kMotionChannels];
     for (int c = 0; c < kMotionChannels; ++c) channels[c] = fields(v, c);
     gradients_[static_cast<std::size_t>(v)] = DeformationGradient(channels);
   }
-  return poisson_.Solve(gradients_);
+  moved_ = poisson_.Solve(gradients_);
+  return moved_;
 }
 
 const PositionMatrix& Reconstructor::AddDisplacement(std::span<const std::int32_t> displacement) {
-  aligned_ = poisson_.solution() + displacement_.Update(displacement);
+  aligned_ = moved_ + displacement_.Update(displacement);
   return aligned_;
 }
 
@@ -80,7 +109,8 @@ Eigen::RowVector3d Reconstructor::Translation(const std::array<std::int32_t, 6>&
          Eigen::RowVector3d(rigid[3], rigid[4], rigid[5]) * static_cast<double>(header_.translation_step);
 }
 
-PositionMatrix Reconstructor::ApplyRigid(const PositionMatrix& aligned, const std::array<std::int32_t, 6>& rigid) const {
+PositionMatrix Reconstructor::ApplyRigid(const PositionMatrix& aligned,
+                                         const std::array<std::int32_t, 6>& rigid) const {
   const Eigen::Matrix3d transposed = Rotation(rigid).transpose();  // positions are rows
   PositionMatrix moved = (aligned.rowwise() - shape_.centre) * transposed;
   moved.rowwise() += Translation(rigid);

@@ -16,7 +16,8 @@ namespace sac {
 // coefficients changed are touched.
 class PlaneField {
  public:
-  PlaneField(const Shape& shape, int channels, double step);
+  // `steps`: of each harmonic's coefficients.
+  PlaneField(const Shape& shape, int channels, Eigen::VectorXd steps);
 
   // vertices x channels.
   const Eigen::MatrixXd& Update(std::span<const std::int32_t> coefficients);
@@ -25,10 +26,15 @@ class PlaneField {
 
  private:
   const Shape& shape_;
-  double step_;
+  Eigen::VectorXd steps_;
   std::vector<std::int32_t> held_;
   Eigen::MatrixXd values_;
 };
+
+// The step of each coefficient of a plane: the header's, larger in small components, whose vertices are few
+// (spec.md 6.5.1).
+Eigen::VectorXd MotionSteps(const Shape& shape, const SequenceHeader& header);
+Eigen::VectorXd DisplacementSteps(const Shape& shape, const SequenceHeader& header);
 
 // Turns coefficients into positions: the one body that encoder and decoder call.
 class Reconstructor {
@@ -68,7 +74,8 @@ class Reconstructor {
   PoissonSystem poisson_;
   bool reference_is_key_ = false;
   DeformationGradients gradients_;
-  PositionMatrix aligned_;
+  PositionMatrix moved_;    // by the motion plane
+  PositionMatrix aligned_;  // and by the displacement plane
 };
 
 }  // namespace sac

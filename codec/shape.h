@@ -29,10 +29,10 @@ struct Shape {
   std::vector<Triangle> triangles;
   std::vector<Component> components;
   EdgeList edges;
-  PositionMatrix positions;      // of M'0, model units
-  Eigen::RowVector3d centre;     // area-weighted mean of M'0
-  std::vector<double> weights;   // cotangent weight per edge, of M'0
-  Eigen::VectorXd masses;        // area share per vertex, of M'0
+  PositionMatrix positions;     // of M'0, model units
+  Eigen::RowVector3d centre;    // area-weighted mean of M'0
+  std::vector<double> weights;  // cotangent weight per edge, of M'0
+  Eigen::VectorXd masses;       // area share per vertex, of M'0
   HarmonicBasis basis;
   std::vector<HarmonicIndex> order;  // of a plane's coefficients
 
@@ -40,8 +40,8 @@ struct Shape {
 };
 
 // Builds the shape. `counts`: harmonics per component, one for each component of `mesh`, at most its vertices.
-// kLimit when the basis would hold more values than `limits` allows; kCorrupt when counts do not fit or the harmonics do
-// not converge.
+// kLimit when the basis would hold more values than `limits` allows; kCorrupt when counts do not fit or the harmonics
+// do not converge.
 Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<const std::uint32_t> counts,
                   std::uint32_t samples_per_harmonic, const Limits& limits, Shape& shape);
 

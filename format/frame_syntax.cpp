@@ -12,7 +12,7 @@ constexpr std::size_t kBands = 7;
 
 // spec.md 7.4: the class of an activity of s / 24 is floor(2 log2(1 + 3 s / 24)), at most 15; here by its thresholds,
 // ceil(8 (2^(c / 2) - 1)) for class c.
-constexpr std::array<std::int64_t, kActivities - 1> kThresholds = {4,  8,  15,  24,  38,  56,  83,  120,
+constexpr std::array<std::int64_t, kActivities - 1> kThresholds = {4,   8,   15,  24,  38,  56,   83,  120,
                                                                    174, 248, 355, 504, 717, 1016, 1441};
 
 std::size_t ActivityClass(std::int64_t s) {
@@ -82,7 +82,8 @@ bool FrameCoder<Coder>::CodePlane(Coder& coder, PlaneModels& models, int channel
     for (std::size_t c = 0; c < width; ++c) {
       const auto i = static_cast<std::ptrdiff_t>(k * width + c);
       const std::ptrdiff_t w = channels;
-      std::int64_t s = 12 * at(plane, i - w) + 6 * at(plane, i - 2 * w) + 3 * at(plane, i - 3 * w) + 3 * at(plane, i - 4 * w);
+      std::int64_t s =
+          12 * at(plane, i - w) + 6 * at(plane, i - 2 * w) + 3 * at(plane, i - 3 * w) + 3 * at(plane, i - 4 * w);
       s += 8 * at(reference, i) + 4 * at(reference, i - w) + 4 * at(reference, i + w);
       if (c > 0) s += 24 * before / static_cast<std::int64_t>(c);
       std::int32_t& value = plane[static_cast<std::size_t>(i)];
@@ -140,7 +141,8 @@ bool FrameCoder<Coder>::Code(Coder& coder, FrameSyntax& frame, FrameBits* bits) 
     }
     good = good && CodePlane(coder, motion_models_, kMotionChannels, last_.motion, frame.motion);
     account(&FrameBits::motion);
-    good = good && CodePlane(coder, displacement_models_, kDisplacementChannels, last_.displacement, frame.displacement);
+    good =
+        good && CodePlane(coder, displacement_models_, kDisplacementChannels, last_.displacement, frame.displacement);
     account(&FrameBits::displacement);
   }
   last_ = frame;

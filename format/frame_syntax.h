@@ -17,10 +17,11 @@ inline constexpr int kDisplacementChannels = 3;  // x, y, z
 // What the bitstream carries of one frame, and nothing else (spec.md 6.2): integers, in units of the header's steps.
 // Planes are stored harmonic by harmonic, in HarmonicOrder, all channels of one together.
 struct FrameSyntax {
-  bool intra = false;    // predicted from zero (and, of `previous`, measured against the I-frame); else from the frame before
-  std::array<std::int32_t, 6> rigid = {};   // rotation (3), translation (3)
-  std::vector<std::int32_t> motion;         // harmonics x kMotionChannels
-  std::vector<std::int32_t> displacement;   // harmonics x kDisplacementChannels
+  bool intra =
+      false;  // predicted from zero (and, of `previous`, measured against the I-frame); else from the frame before
+  std::array<std::int32_t, 6> rigid = {};  // rotation (3), translation (3)
+  std::vector<std::int32_t> motion;        // harmonics x kMotionChannels
+  std::vector<std::int32_t> displacement;  // harmonics x kDisplacementChannels
 };
 
 // Residuals stay within this magnitude (spec.md 6.2), coefficients within kMaxCoefficient.

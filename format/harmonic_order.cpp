@@ -15,7 +15,8 @@ std::vector<HarmonicIndex> HarmonicOrder(std::span<const std::uint32_t> counts) 
     }
   }
   std::stable_sort(order.begin(), order.end(), [&](const HarmonicIndex& a, const HarmonicIndex& b) {
-    return static_cast<std::uint64_t>(a.k) * counts[b.component] < static_cast<std::uint64_t>(b.k) * counts[a.component];
+    return static_cast<std::uint64_t>(a.k) * counts[b.component] <
+           static_cast<std::uint64_t>(b.k) * counts[a.component];
   });
   return order;
 }

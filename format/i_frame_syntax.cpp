@@ -106,13 +106,14 @@ const char* CodeSide(Coder& coder, const SequenceHeader& header, IFrameSyntax& s
   SignedModels count_models;
   std::uint32_t count = header.harmonics;
   std::uint64_t total = 0;
-  if (!CodeList(coder, s.harmonics, header.vertices, [&](std::uint32_t& h) {
-        const std::uint32_t expected = count;
-        if (!CodeNear(coder, count_models, expected, header.harmonics + 1, h) || h == 0) return false;
-        count = h;
-        total += h;
-        return total <= header.harmonics;
-      }) ||
+  if (!CodeList(coder, s.harmonics, header.vertices,
+                [&](std::uint32_t& h) {
+                  const std::uint32_t expected = count;
+                  if (!CodeNear(coder, count_models, expected, header.harmonics + 1, h) || h == 0) return false;
+                  count = h;
+                  total += h;
+                  return total <= header.harmonics;
+                }) ||
       total != header.harmonics) {
     return "harmonics per component";
   }

@@ -24,8 +24,8 @@ struct LooseVertex {
   std::array<std::uint8_t, 4> color;      // when the mesh has colours
 };
 
-// The payload of an I-frame packet (spec.md 5): the mesh as Draco codes it, what Draco cannot code, and how to build the
-// harmonic basis.
+// The payload of an I-frame packet (spec.md 5): the mesh as Draco codes it, what Draco cannot code, and how to build
+// the harmonic basis.
 struct IFrameSyntax {
   std::vector<std::uint8_t> mesh;  // a Draco stream; empty when no triangle is left to it
   std::vector<Weld> welds;

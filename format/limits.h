@@ -9,10 +9,11 @@ namespace sac {
 struct Limits {
   std::uint32_t vertices = 4'000'000;
   std::uint32_t triangles = 8'000'000;
-  std::uint32_t harmonics = 8'192;        // and at least one per component, see basis_values
+  std::uint32_t harmonics = 8'192;  // and at least one per component, see basis_values
   std::uint32_t frames_per_group = 4'096;
   std::uint32_t packet_bytes = 1u << 28;
-  std::uint64_t basis_values = 1u << 28;  // doubles in all harmonics together: sum over components of vertices x harmonics
+  std::uint64_t basis_values =
+      1u << 28;  // doubles in all harmonics together: sum over components of vertices x harmonics
 };
 
 }  // namespace sac

@@ -38,7 +38,9 @@ class RangeEncoder {
   // Ends the code with the fewest bytes and returns all of them; trailing zero bytes are left out.
   std::vector<std::uint8_t> Finish();
   // Length of the code so far in bits, to account for its parts.
-  double bits() const { return 8.0 * static_cast<double>(bytes_.size()) + 32.0 - std::log2(static_cast<double>(range_)); }
+  double bits() const {
+    return 8.0 * static_cast<double>(bytes_.size()) + 32.0 - std::log2(static_cast<double>(range_));
+  }
 
  private:
   void Narrow(std::uint32_t offset, std::uint32_t range);

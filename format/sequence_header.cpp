@@ -51,8 +51,8 @@ Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& 
   for (const float v : {header.origin_x, header.origin_y, header.origin_z}) {
     if (!std::isfinite(v)) return Status::Corrupt("sequence header: origin is not finite");
   }
-  for (const float v : {header.cell, header.motion_step, header.displacement_step, header.rotation_step,
-                        header.translation_step}) {
+  for (const float v :
+       {header.cell, header.motion_step, header.displacement_step, header.rotation_step, header.translation_step}) {
     if (!std::isfinite(v) || v <= 0) return Status::Corrupt("sequence header: a step is not positive");
   }
   if (header.vertices > limits.vertices) return Exceeds("vertices", header.vertices, limits.vertices);

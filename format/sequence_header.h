@@ -26,7 +26,7 @@ struct SequenceHeader {
   std::uint8_t position_bits = 10;   // of the position grid, 1..24
   std::uint32_t vertices = 0;
   std::uint32_t triangles = 0;
-  std::uint32_t harmonics = 0;  // over all components
+  std::uint32_t harmonics = 0;             // over all components
   std::uint32_t frame_rate_numerator = 0;  // 0: unknown
   std::uint32_t frame_rate_denominator = 1;
   float origin_x = 0;  // of the position grid, model units

@@ -41,7 +41,7 @@ class [[nodiscard]] Status {
 }  // namespace sac
 
 // Returns the status of `expr` to the caller unless it is ok.
-#define SAC_RETURN_IF_ERROR(expr)                   \
-  do {                                              \
+#define SAC_RETURN_IF_ERROR(expr)                                      \
+  do {                                                                 \
     if (::sac::Status status_ = (expr); !status_.ok()) return status_; \
   } while (false)

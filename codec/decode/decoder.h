@@ -36,8 +36,8 @@ struct DecodedFrame {
 //   }
 //   status = decoder.Finish();
 //
-// Memory holds the mesh, its basis and one packet, whatever the length of the clip. An error is final. A decoder is used
-// by one thread at a time; decoders share nothing.
+// Memory holds the mesh, its basis and one packet, whatever the length of the clip. An error is final. A decoder is
+// used by one thread at a time; decoders share nothing.
 class Decoder {
  public:
   explicit Decoder(const DecoderSettings& settings = {});

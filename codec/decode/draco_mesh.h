@@ -18,14 +18,14 @@ struct DracoMesh {
   std::vector<GridPosition> entries;
   std::vector<Triangle> triangles;  // of entries
   std::vector<std::array<float, 2>> uvs;
-  std::vector<Triangle> uv_triangles;  // of uvs; empty without texture coordinates
-  std::vector<Vec3f> normals;          // per entry; empty without
+  std::vector<Triangle> uv_triangles;               // of uvs; empty without texture coordinates
+  std::vector<Vec3f> normals;                       // per entry; empty without
   std::vector<std::array<std::uint8_t, 4>> colors;  // per entry; empty without
-  std::vector<std::uint32_t> ids;  // per entry, of an encoder's own numbering; empty without
+  std::vector<std::uint32_t> ids;                   // per entry, of an encoder's own numbering; empty without
 };
 
-// Decodes a Draco stream; sizes are checked against `header` before Draco allocates. kCorrupt when Draco refuses it or a
-// rule of spec.md 5.1 is broken.
+// Decodes a Draco stream; sizes are checked against `header` before Draco allocates. kCorrupt when Draco refuses it or
+// a rule of spec.md 5.1 is broken.
 Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& header, DracoMesh& mesh);
 
 }  // namespace sac

@@ -25,7 +25,8 @@ Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, 
   for (std::uint32_t e = 0; e < entries; ++e) {
     if (weld != syntax.welds.end() && weld->point == e) {
       vertex[e] = vertex[weld->onto];
-      if (draco.entries[e] != draco.entries[weld->onto]) return Status::Corrupt("I-frame: a weld of different positions");
+      if (draco.entries[e] != draco.entries[weld->onto])
+        return Status::Corrupt("I-frame: a weld of different positions");
       ++weld;
     } else {
       vertex[e] = vertices++;

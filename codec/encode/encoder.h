@@ -14,17 +14,17 @@ namespace sac {
 
 // Everything an encoder chooses. Steps and bits that are left out come from `quality`.
 struct EncoderSettings {
-  double quality = 50;                      // 0 (smallest) to 100 (nearest to the input)
-  std::uint32_t harmonics = 200;            // over all components; at least one each, at most the vertices
-  std::uint32_t samples_per_harmonic = 0;   // of the reduced basis; 0: exact harmonics
-  std::uint32_t group = 128;                // frames between points of random access
+  double quality = 50;                     // 0 (smallest) to 100 (nearest to the input)
+  std::uint32_t harmonics = 200;           // over all components; at least one each, at most the vertices
+  std::uint32_t samples_per_harmonic = 2;  // of the reduced basis (docs/harmonics.md); 0: exact harmonics
+  std::uint32_t group = 128;               // frames between points of random access
   ReferenceShape reference_shape = ReferenceShape::kKey;
   std::optional<double> motion_step;        // radians and strain
   std::optional<double> displacement_step;  // fraction of the first frame's RMS radius
   std::optional<int> position_bits;         // of the I-frame's grid, 1..24
   std::uint32_t frame_rate_numerator = 0;   // frames per second; 0: unknown
   std::uint32_t frame_rate_denominator = 1;
-  bool keep_order = false;                  // put the input's vertex order in the stream
+  bool keep_order = false;  // put the input's vertex order in the stream
 };
 
 // Bytes by what they say; they add up to the stream.

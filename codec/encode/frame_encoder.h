@@ -25,13 +25,17 @@ class FrameEncoder {
   bool Encode(const PositionMatrix& positions, FrameSyntax& frame);
 
  private:
-  void ChooseRigid(const PositionMatrix& positions, const FrameCoefficients& prediction, FrameSyntax& frame);
-  void ChooseMotion(const PositionMatrix& aligned, FrameSyntax& frame);
+  std::array<std::int32_t, 6> ChooseRigid(const PositionMatrix& positions,
+                                          const std::array<std::int32_t, 6>& prediction);
+  // Whether a frame costs less as an intra frame than with the residual `predicted`.
+  bool BetterFromZero(const Eigen::MatrixXd& target, std::span<const std::int32_t> predicted) const;
 
   const Shape& shape_;
   SequenceHeader header_;
   TriangleFields fields_;
   Projection projection_;
+  Eigen::VectorXd motion_steps_;
+  Eigen::VectorXd displacement_steps_;
   Predictor predictor_;
   Reconstructor reconstructor_;
   bool starts_group_ = true;

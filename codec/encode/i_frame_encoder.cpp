@@ -15,8 +15,8 @@ constexpr std::uint32_t kNoEntry = 0xffffffffu;
 
 // The part of a mesh that Draco is given: triangles with three different vertices, and the vertices they use.
 struct DracoInput {
-  std::vector<std::uint32_t> vertices;  // input vertex per entry
-  std::vector<Triangle> triangles;      // of points
+  std::vector<std::uint32_t> vertices;               // input vertex per entry
+  std::vector<Triangle> triangles;                   // of points
   std::vector<std::array<std::uint32_t, 2>> points;  // entry and texture coordinate
 };
 
@@ -44,8 +44,8 @@ DracoInput SelectForDraco(const Mesh& input) {
 
 // Adds an attribute whose values are per entry (`index` 0) or per texture coordinate (1).
 template <class Value>
-int AddAttribute(draco::Mesh& mesh, const DracoInput& input, draco::GeometryAttribute::Type type, draco::DataType data_type,
-                 bool normalized, std::size_t index, const std::vector<Value>& values) {
+int AddAttribute(draco::Mesh& mesh, const DracoInput& input, draco::GeometryAttribute::Type type,
+                 draco::DataType data_type, bool normalized, std::size_t index, const std::vector<Value>& values) {
   constexpr auto kComponents = static_cast<std::int8_t>(std::tuple_size_v<Value>);
   draco::GeometryAttribute attribute;
   attribute.Init(type, nullptr, kComponents, data_type, normalized, sizeof(Value), 0);
@@ -184,7 +184,8 @@ Status EncodeIFrameMesh(const Mesh& input, const std::vector<GridPosition>& grid
 
   SAC_RETURN_IF_ERROR(AssembleIFrame(syntax, header, std::move(draco), decoded));
   input_of_vertex.resize(vertices);
-  for (std::size_t e = 0; e < input_of_entry.size(); ++e) input_of_vertex[decoded.vertex_of_entry[e]] = input_of_entry[e];
+  for (std::size_t e = 0; e < input_of_entry.size(); ++e)
+    input_of_vertex[decoded.vertex_of_entry[e]] = input_of_entry[e];
   return Status::Ok();
 }
 

@@ -43,9 +43,9 @@ Eigen::MatrixXd Projection::Solve(const Eigen::MatrixXd& at_vertices,
   std::vector<Eigen::MatrixXd> solutions;
   for (std::size_t i = 0; i < systems_.size(); ++i) {
     const ComponentHarmonics& c = shape_.basis.components[i];
-    solutions.push_back((systems_[i].*system)
-                            .solve(c.vectors.transpose() *
-                                   at_vertices.middleRows(c.component.first, c.component.count)));
+    solutions.push_back(
+        (systems_[i].*system)
+            .solve(c.vectors.transpose() * at_vertices.middleRows(c.component.first, c.component.count)));
   }
   Eigen::MatrixXd coefficients(static_cast<Eigen::Index>(shape_.order.size()), at_vertices.cols());
   for (std::size_t i = 0; i < shape_.order.size(); ++i) {

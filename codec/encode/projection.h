@@ -8,8 +8,8 @@
 
 namespace sac {
 
-// Least squares of fields onto the harmonics, component by component. Results are harmonics x channels in the order of a
-// plane's coefficients.
+// Least squares of fields onto the harmonics, component by component. Results are harmonics x channels in the order of
+// a plane's coefficients.
 class Projection {
  public:
   // `shape` must outlive it. `areas`: weights of the triangles.

@@ -15,13 +15,13 @@ inline std::int32_t QuantizeWithDeadZone(double value) {
   return static_cast<std::int32_t>(value < 0 ? -magnitude : magnitude);
 }
 
-// residual[k, c] = target[k, c] / step - prediction[k, c], quantized; row-major like a plane.
-inline void QuantizePlane(const Eigen::MatrixXd& target, double step, std::span<const std::int32_t> prediction,
-                          std::span<std::int32_t> residual) {
+// residual[k, c] = target[k, c] / steps[k] - prediction[k, c], quantized; row-major like a plane.
+inline void QuantizePlane(const Eigen::MatrixXd& target, const Eigen::VectorXd& steps,
+                          std::span<const std::int32_t> prediction, std::span<std::int32_t> residual) {
   std::size_t i = 0;
   for (Eigen::Index k = 0; k < target.rows(); ++k) {
     for (Eigen::Index c = 0; c < target.cols(); ++c, ++i) {
-      residual[i] = QuantizeWithDeadZone(target(k, c) / step - prediction[i]);
+      residual[i] = QuantizeWithDeadZone(target(k, c) / steps[k] - prediction[i]);
     }
   }
 }

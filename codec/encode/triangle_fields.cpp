@@ -3,7 +3,6 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 #include <Eigen/SVD>
-
 #include <algorithm>
 #include <cmath>
 #include <numbers>

@@ -9,9 +9,10 @@
 
 namespace sac {
 
-// Measures the motion fields of a deformation at triangles: the nine channels of log-rotation and stretch, from the polar
-// decomposition J = U P of each deformation gradient (Wang et al. 2015, section 3.1). Keeps the last frame's rotations,
-// because a rotation vector is unwrapped in time: of the branches 2 pi apart the one nearest to the frame before.
+// Measures the motion fields of a deformation at triangles: the nine channels of log-rotation and stretch, from the
+// polar decomposition J = U P of each deformation gradient (Wang et al. 2015, section 3.1). Keeps the last frame's
+// rotations, because a rotation vector is unwrapped in time: of the branches 2 pi apart the one nearest to the frame
+// before.
 class TriangleFields {
  public:
   explicit TriangleFields(std::span<const Triangle> triangles);

@@ -1,0 +1,64 @@
+#include "codec/radial_functions.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <vector>
+
+namespace sac {
+namespace {
+
+constexpr double kReach = 3;  // radius of a function in covering radii
+
+std::uint64_t SquaredDistance(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {
+  std::uint64_t sum = 0;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const std::int64_t d = static_cast<std::int64_t>(a[i]) - b[i];
+    sum += static_cast<std::uint64_t>(d * d);
+  }
+  return sum;
+}
+
+// Wendland's C2 function of the distance over the radius, below 1.
+double Wendland(double t) {
+  const double s = (1 - t) * (1 - t);
+  return s * s * (4 * t + 1);
+}
+
+}  // namespace
+
+Eigen::SparseMatrix<double> RadialFunctions(std::span<const std::array<std::uint32_t, 3>> grid, std::uint32_t samples) {
+  // Farthest-point sampling from the first vertex on; of equally far vertices the first.
+  std::vector<std::uint64_t> distance(grid.size(), std::numeric_limits<std::uint64_t>::max());
+  std::vector<std::size_t> chosen = {0};
+  std::uint64_t covering = 0;
+  for (;;) {
+    std::size_t farthest = 0;
+    for (std::size_t v = 0; v < grid.size(); ++v) {
+      distance[v] = std::min(distance[v], SquaredDistance(grid[v], grid[chosen.back()]));
+      if (distance[v] > distance[farthest]) farthest = v;
+    }
+    covering = distance[farthest];
+    if (chosen.size() == samples) break;
+    if (covering == 0) return {};
+    chosen.push_back(farthest);
+  }
+
+  const double radius = kReach * std::sqrt(static_cast<double>(std::max<std::uint64_t>(covering, 1)));
+  std::vector<Eigen::Triplet<double>> entries;
+  Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(grid.size()));
+  for (std::size_t i = 0; i < chosen.size(); ++i) {
+    for (std::size_t v = 0; v < grid.size(); ++v) {
+      const double t = std::sqrt(static_cast<double>(SquaredDistance(grid[v], grid[chosen[i]]))) / radius;
+      if (t >= 1) continue;
+      const double value = Wendland(t);
+      entries.emplace_back(static_cast<int>(v), static_cast<int>(i), value);
+      sum[static_cast<Eigen::Index>(v)] += value;
+    }
+  }
+  Eigen::SparseMatrix<double> functions(static_cast<Eigen::Index>(grid.size()), samples);
+  functions.setFromTriplets(entries.begin(), entries.end());
+  return sum.cwiseInverse().asDiagonal() * functions;
+}
+
+}  // namespace sac
