@@ -1,0 +1,70 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <functional>
+
+#include "codec/mesh.h"
+#include "format/status.h"
+
+namespace sac {
+
+// Procedural animations of any size, for tests, demonstrations and measurements at scale.
+enum class SynthKind {
+  kWalker,  // an articulated figure walking along a figure of eight, its arms turning full circles; one closed surface
+  kFlag,    // a flag in the wind, pinned at one side, with wrinkles of several scales; has texture coordinates
+  kSphere,  // a geodesic sphere, rotating and pulsating in low spherical harmonics; has normals
+  kParts,   // many small rigid pieces, each tumbling along its own path; has colours
+  kVase,    // a surface of revolution moving rigidly; has texture coordinates with a seam
+};
+
+// In the order of SynthKind.
+inline constexpr std::array<const char*, 5> kSynthKindNames{"walker", "flag", "sphere", "parts", "vase"};
+
+inline constexpr std::uint32_t kMaxSynthVertices = 20'000'000;
+
+// The fewest vertices that a clip of the kind may be asked for.
+std::uint32_t MinSynthVertices(SynthKind kind);
+
+struct SynthSettings {
+  SynthKind kind = SynthKind::kWalker;
+  // Wanted number. The clip's own number is within 15 % of it from 500 vertices on; below, there are too few shapes to
+  // choose from.
+  std::uint32_t vertices = 5000;
+  std::uint32_t frames = 100;
+  std::uint32_t seed = 1;  // varies proportions, phases, paths; equal settings give equal clips
+};
+
+// A clip whose frames are made one at a time: memory does not depend on their number. Random numbers are integers
+// scaled by hand, so that clips differ between machines by no more than the rounding of their mathematical functions.
+//
+//   SynthClip clip;
+//   SAC_RETURN_IF_ERROR(SynthClip::Create({.kind = SynthKind::kFlag, .vertices = 10000}, clip));
+//   for (std::uint32_t f = 0; f < clip.frames(); ++f) Use(clip.Frame(f));
+class SynthClip {
+ public:
+  // An empty clip.
+  SynthClip() = default;
+
+  // InvalidArgument for fewer than MinSynthVertices or more than kMaxSynthVertices vertices, or no frame; `clip` is
+  // then left as it was.
+  static Status Create(const SynthSettings& settings, SynthClip& clip);
+
+  // Frame 0 with its attributes.
+  const Mesh& mesh() const { return mesh_; }
+
+  std::uint32_t frames() const { return frames_; }
+  double fps() const { return kFps; }
+
+  // Positions in metres, y up, of any frame below frames(), in any order. May be called from several threads at once.
+  Positions Frame(std::uint32_t f) const { return motion_(f / kFps); }
+
+ private:
+  static constexpr double kFps = 30;
+
+  Mesh mesh_;
+  std::uint32_t frames_ = 0;
+  std::function<Positions(double seconds)> motion_;
+};
+
+}  // namespace sac
