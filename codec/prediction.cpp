@@ -1,50 +1,64 @@
 #include "codec/prediction.h"
 
+#include <algorithm>
 #include <cstdlib>
+#include <utility>
 
 namespace sac {
 namespace {
 
 template <class Values>
-bool AddInto(Values& sum, const Values& residual) {
+bool AddInto(Values& sum, const Values& residual, std::int64_t step) {
   bool good = true;
   for (std::size_t i = 0; i < sum.size(); ++i) {
-    const std::int64_t v = static_cast<std::int64_t>(sum[i]) + residual[i];
+    const std::int64_t v = sum[i] + residual[i] * step;
     good = good && std::abs(v) <= kMaxCoefficient;
     sum[i] = static_cast<std::int32_t>(v);
   }
   return good;
 }
 
-}  // namespace
-
-Predictor::Predictor(ReferenceShape reference_shape, std::size_t harmonics)
-    : reference_shape_(reference_shape), harmonics_(harmonics), last_(harmonics) {}
-
-void Predictor::StartGroup() {
-  last_ = FrameCoefficients(harmonics_);
-  rigid_velocity_ = {};
+// Halves are rounded up.
+template <class Values>
+void Mean(Values& a, const Values& b) {
+  for (std::size_t i = 0; i < a.size(); ++i) a[i] = (a[i] + b[i] + 1) >> 1;
 }
 
-FrameCoefficients Predictor::Predict(bool intra) const {
-  FrameCoefficients prediction(harmonics_);
-  if (intra) return prediction;
-  for (std::size_t i = 0; i < 6; ++i) prediction.rigid[i] = last_.rigid[i] + rigid_velocity_[i];
+}  // namespace
+
+std::int32_t LevelStep(const SequenceHeader& header, std::uint32_t level) {
+  std::int32_t step = kCoefficientsPerStep;
+  for (std::uint32_t i = 0; i < level && step < 4096; ++i) step = (step * header.level_growth + 32) / 64;
+  return std::min(step, 4096);
+}
+
+Predictor::Predictor(const SequenceHeader& header, std::size_t harmonics) : header_(header), harmonics_(harmonics) {}
+
+FrameCoefficients Predictor::Predict(const std::vector<std::uint32_t>& references) const {
+  if (references.empty()) return FrameCoefficients(harmonics_);
+  FrameCoefficients prediction = frames_[references[0]];
+  if (references.size() == 2) {
+    const FrameCoefficients& other = frames_[references[1]];
+    Mean(prediction.rigid, other.rigid);
+    Mean(prediction.motion, other.motion);
+    Mean(prediction.displacement, other.displacement);
+  }
   // Against the previous reconstruction, the planes are already differences (Wang et al. 2015, section 4).
-  if (reference_shape_ == ReferenceShape::kKey) {
-    prediction.motion = last_.motion;
-    prediction.displacement = last_.displacement;
+  if (header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious)) {
+    std::fill(prediction.motion.begin(), prediction.motion.end(), 0);
+    std::fill(prediction.displacement.begin(), prediction.displacement.end(), 0);
   }
   return prediction;
 }
 
-bool Predictor::Add(const FrameSyntax& frame, FrameCoefficients& out) {
-  out = Predict(frame.intra);
-  const bool good = AddInto(out.rigid, frame.rigid) && AddInto(out.motion, frame.motion) &&
-                    AddInto(out.displacement, frame.displacement);
-  if (!good) return false;
-  for (std::size_t i = 0; i < 6; ++i) rigid_velocity_[i] = frame.intra ? 0 : out.rigid[i] - last_.rigid[i];
-  last_ = out;
+bool Predictor::Add(const FrameSyntax& frame) {
+  FrameCoefficients sum = Predict(frame.slot.references);
+  const std::int32_t step = LevelStep(header_, frame.slot.level);
+  if (!AddInto(sum.rigid, frame.rigid, 1) || !AddInto(sum.motion, frame.motion, step) ||
+      !AddInto(sum.displacement, frame.displacement, step)) {
+    return false;
+  }
+  frames_.push_back(std::move(sum));
   return true;
 }
 

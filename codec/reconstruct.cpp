@@ -21,11 +21,11 @@ Eigen::ArrayXd ComponentShare(const Shape& shape) {
 }  // namespace
 
 Eigen::VectorXd MotionSteps(const Shape& shape, const SequenceHeader& header) {
-  return static_cast<double>(header.motion_step) * ComponentShare(shape).sqrt().sqrt();
+  return static_cast<double>(header.motion_step) / kCoefficientsPerStep * ComponentShare(shape).sqrt().sqrt();
 }
 
 Eigen::VectorXd DisplacementSteps(const Shape& shape, const SequenceHeader& header) {
-  return static_cast<double>(header.displacement_step) * ComponentShare(shape).sqrt();
+  return static_cast<double>(header.displacement_step) / kCoefficientsPerStep * ComponentShare(shape).sqrt();
 }
 
 PlaneField::PlaneField(const Shape& shape, int channels, Eigen::VectorXd steps)
@@ -64,20 +64,21 @@ Reconstructor::Reconstructor(const Shape& shape, const SequenceHeader& header)
       poisson_(shape),
       gradients_(shape.vertices()) {}
 
-bool Reconstructor::StartIntra() {
+bool Reconstructor::StartGroup() {
   motion_.Reset();
   displacement_.Reset();
-  if (reference_is_key_) return true;
-  reference_is_key_ = true;
-  return poisson_.SetReference(shape_.positions, shape_.weights);
+  return UseKeyReference();
 }
 
-bool Reconstructor::StartPredicted() {
-  if (header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kKey)) return true;
-  motion_.Reset();
-  displacement_.Reset();
+bool Reconstructor::StartFrame(bool intra) {
+  if (intra || header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kKey)) return UseKeyReference();
   reference_is_key_ = false;
   return poisson_.SetReference(aligned_, CotangentWeights(aligned_, shape_.triangles, shape_.edges));
+}
+
+bool Reconstructor::UseKeyReference() {
+  if (std::exchange(reference_is_key_, true)) return true;
+  return poisson_.SetReference(shape_.positions, shape_.weights);
 }
 
 const PositionMatrix& Reconstructor::ReconstructMotion(std::span<const std::int32_t> motion) {

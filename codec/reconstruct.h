@@ -31,22 +31,23 @@ class PlaneField {
   Eigen::MatrixXd values_;
 };
 
-// The step of each coefficient of a plane: the header's, larger in small components, whose vertices are few
-// (spec.md 6.5.1).
+// The unit of each coefficient of a plane: a sixteenth of the header's step, larger in small components, whose vertices
+// are few (spec.md 6.5.1).
 Eigen::VectorXd MotionSteps(const Shape& shape, const SequenceHeader& header);
 Eigen::VectorXd DisplacementSteps(const Shape& shape, const SequenceHeader& header);
 
 // Turns coefficients into positions: the one body that encoder and decoder call.
 class Reconstructor {
  public:
-  // `shape` must outlive it. Call StartGroup() first.
+  // `shape` must outlive it. Call StartGroup() first, then for each frame StartFrame() and
+  // Reconstruct() or its parts.
   Reconstructor(const Shape& shape, const SequenceHeader& header);
 
-  // The next frame is intra: measured against M'0, independent of what came before. False when the reference shape
+  // Forgets the frames before, so that a group decodes alike wherever decoding begins. False when the reference shape
   // cannot be factorized.
-  bool StartIntra();
-  // The next frame is predicted: of `previous`, measured against the last frame reconstructed.
-  bool StartPredicted();
+  bool StartGroup();
+  // Sets the reference shape of the next frame: M'0, but of `previous` the last frame reconstructed, unless `intra`.
+  bool StartFrame(bool intra);
 
   // What the motion plane alone gives, before the rigid motion.
   const PositionMatrix& ReconstructMotion(std::span<const std::int32_t> motion);
@@ -64,6 +65,7 @@ class Reconstructor {
   const PositionMatrix& reference() const { return reference_is_key_ ? shape_.positions : aligned_; }
 
  private:
+  bool UseKeyReference();
   Eigen::Matrix3d Rotation(const std::array<std::int32_t, 6>& rigid) const;
   Eigen::RowVector3d Translation(const std::array<std::int32_t, 6>& rigid) const;
 

@@ -23,11 +23,33 @@ std::size_t ActivityClass(std::int64_t s) {
 
 template <class Coder>
 FrameCoder<Coder>::FrameCoder(std::span<const std::uint32_t> harmonics_per_component)
-    : order_(HarmonicOrder(harmonics_per_component)),
-      motion_models_(kActivities * kBands),
-      displacement_models_(kActivities * kBands) {
-  last_.motion.assign(order_.size() * kMotionChannels, 0);
-  last_.displacement.assign(order_.size() * kDisplacementChannels, 0);
+    : order_(HarmonicOrder(harmonics_per_component)), zeros_(order_.size() * kMotionChannels) {
+  motion_models_.fill(PlaneModels(kActivities * kBands));
+  displacement_models_.fill(PlaneModels(kActivities * kBands));
+}
+
+// spec.md 6.2: a flag tells whether the references are those of the structure; if not they follow, each as its distance
+// back in coding order.
+template <class Coder>
+bool FrameCoder<Coder>::CodeReferences(Coder& coder, const FrameSlot& slot, FrameSyntax& frame) {
+  if constexpr (Coder::kDecodes) frame.slot = slot;
+  const auto index = static_cast<std::uint32_t>(coded_.size());
+  if (index == 0) return frame.slot.references.empty();
+  bool is_explicit = frame.slot.references != slot.references;
+  coder.Bit(explicit_model_, is_explicit);
+  if (!is_explicit) return true;
+  std::size_t count = frame.slot.references.size();
+  bool any = count > 0, two = count > 1;
+  coder.Bit(reference_count_models_[0], any);
+  if (any) coder.Bit(reference_count_models_[1], two);
+  if constexpr (Coder::kDecodes) frame.slot.references.assign(any ? (two ? 2 : 1) : 0, 0);
+  for (std::uint32_t& reference : frame.slot.references) {
+    std::uint32_t distance = index - 1 - reference;
+    CodeUnsigned(coder, reference_models_, distance);
+    if (distance >= index) return false;
+    reference = index - 1 - distance;
+  }
+  return true;
 }
 
 template <class Coder>
@@ -70,7 +92,8 @@ bool FrameCoder<Coder>::CodeCoefficient(Coder& coder, CoefficientModels& models,
 
 template <class Coder>
 bool FrameCoder<Coder>::CodePlane(Coder& coder, PlaneModels& models, int channels,
-                                  std::span<const std::int32_t> reference, std::span<std::int32_t> plane) {
+                                  const std::array<std::span<const std::int32_t>, 2>& references,
+                                  std::span<std::int32_t> plane) {
   const auto width = static_cast<std::size_t>(channels);
   const auto size = static_cast<std::ptrdiff_t>(plane.size());
   // Magnitude of one residual, bounded so that sums stay small; zero outside the plane.
@@ -84,7 +107,9 @@ bool FrameCoder<Coder>::CodePlane(Coder& coder, PlaneModels& models, int channel
       const std::ptrdiff_t w = channels;
       std::int64_t s =
           12 * at(plane, i - w) + 6 * at(plane, i - 2 * w) + 3 * at(plane, i - 3 * w) + 3 * at(plane, i - 4 * w);
-      s += 8 * at(reference, i) + 4 * at(reference, i - w) + 4 * at(reference, i + w);
+      for (const auto& reference : references) {
+        s += 4 * at(reference, i) + 2 * at(reference, i - w) + 2 * at(reference, i + w);
+      }
       if (c > 0) s += 24 * before / static_cast<std::int64_t>(c);
       std::int32_t& value = plane[static_cast<std::size_t>(i)];
       if (!CodeCoefficient(coder, models[ActivityClass(s) * kBands + order_[k].band], value)) return false;
@@ -96,25 +121,19 @@ bool FrameCoder<Coder>::CodePlane(Coder& coder, PlaneModels& models, int channel
 }
 
 template <class Coder>
-bool FrameCoder<Coder>::Code(Coder& coder, FrameSyntax& frame, FrameBits* bits) {
+bool FrameCoder<Coder>::Code(Coder& coder, const FrameSlot& slot, FrameSyntax& frame, FrameBits* bits) {
   double mark = 0;
+  if constexpr (!Coder::kDecodes) mark = coder.bits();
   const auto account = [&](double FrameBits::*part) {
     if constexpr (!Coder::kDecodes) {
       if (bits) bits->*part += coder.bits() - mark;
       mark = coder.bits();
     }
   };
-  account(&FrameBits::side);
-  if (bits) bits->side -= mark;
-
-  frame.motion.resize(last_.motion.size());
-  frame.displacement.resize(last_.displacement.size());
-  if (first_) {
-    frame.intra = true;
-    first_ = false;
-  } else {
-    coder.Bit(intra_model_, frame.intra);
-  }
+  if (!CodeReferences(coder, slot, frame)) return false;
+  frame.motion.resize(order_.size() * kMotionChannels);
+  frame.displacement.resize(order_.size() * kDisplacementChannels);
+  const std::size_t level = std::min<std::size_t>(slot.level, kLevels - 1);
   const auto zero = [](std::int32_t v) { return v == 0; };
   bool repeats = false;
   if constexpr (!Coder::kDecodes) {
@@ -122,7 +141,7 @@ bool FrameCoder<Coder>::Code(Coder& coder, FrameSyntax& frame, FrameBits* bits) 
               std::all_of(frame.motion.begin(), frame.motion.end(), zero) &&
               std::all_of(frame.displacement.begin(), frame.displacement.end(), zero);
   }
-  coder.Bit(repeat_model_, repeats);
+  coder.Bit(repeat_models_[level], repeats);
   bool good = true;
   if (repeats) {
     frame.rigid = {};
@@ -131,21 +150,25 @@ bool FrameCoder<Coder>::Code(Coder& coder, FrameSyntax& frame, FrameBits* bits) 
     account(&FrameBits::side);
   } else {
     for (std::size_t i = 0; i < 6; ++i) {
-      CodeSigned(coder, rigid_models_[i / 3], frame.rigid[i]);
+      CodeSigned(coder, rigid_models_[2 * level + i / 3], frame.rigid[i]);
       good = good && std::abs(static_cast<std::int64_t>(frame.rigid[i])) <= kMaxCoefficient;
     }
     account(&FrameBits::side);
-    if (frame.intra) {  // nothing before it counts
-      std::fill(last_.motion.begin(), last_.motion.end(), 0);
-      std::fill(last_.displacement.begin(), last_.displacement.end(), 0);
-    }
-    good = good && CodePlane(coder, motion_models_, kMotionChannels, last_.motion, frame.motion);
+    // The first of two references, or the only one twice; nothing counts before an intra frame.
+    const auto residuals = [&](std::vector<std::int32_t> FrameSyntax::*plane, std::size_t i) {
+      const auto& references = frame.slot.references;
+      if (references.empty()) return std::span<const std::int32_t>(zeros_).first((frame.*plane).size());
+      return std::span<const std::int32_t>(coded_[references[std::min(i, references.size() - 1)]].*plane);
+    };
+    const auto code = [&](std::vector<std::int32_t> FrameSyntax::*plane, PlaneModels& models, int channels) {
+      return CodePlane(coder, models, channels, {residuals(plane, 0), residuals(plane, 1)}, frame.*plane);
+    };
+    good = good && code(&FrameSyntax::motion, motion_models_[level], kMotionChannels);
     account(&FrameBits::motion);
-    good =
-        good && CodePlane(coder, displacement_models_, kDisplacementChannels, last_.displacement, frame.displacement);
+    good = good && code(&FrameSyntax::displacement, displacement_models_[level], kDisplacementChannels);
     account(&FrameBits::displacement);
   }
-  last_ = frame;
+  coded_.push_back(frame);
   return good && coder.ok();
 }
 

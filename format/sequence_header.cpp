@@ -44,6 +44,7 @@ Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& 
   if (!reader.in.ok() || reader.in.remaining() != 0) return Status::Corrupt("sequence header: wrong length");
   if (header.reference_shape > 1) return Status::Corrupt("sequence header: unknown reference shape");
   if (header.position_bits < 1 || header.position_bits > 24) return Status::Corrupt("sequence header: position bits");
+  if (header.level_growth < 64 || header.level_growth > 128) return Status::Corrupt("sequence header: level growth");
   if (header.vertices == 0) return Status::Corrupt("sequence header: no vertices");
   if (header.harmonics == 0) return Status::Corrupt("sequence header: no harmonics");
   if (header.harmonics > header.vertices) return Status::Corrupt("sequence header: more harmonics than vertices");

@@ -24,6 +24,7 @@ struct SequenceHeader {
   std::uint8_t version_minor = kVersionMinor;
   std::uint8_t reference_shape = 0;  // ReferenceShape
   std::uint8_t position_bits = 10;   // of the position grid, 1..24
+  std::uint8_t level_growth = 64;    // of the planes' steps from level to level of a pyramid, in 1/64: 64..128
   std::uint32_t vertices = 0;
   std::uint32_t triangles = 0;
   std::uint32_t harmonics = 0;             // over all components
@@ -50,6 +51,7 @@ void VisitFields(Header& h, Visitor&& visit) {
   visit("version_minor", h.version_minor);
   visit("reference_shape", h.reference_shape);
   visit("position_bits", h.position_bits);
+  visit("level_growth", h.level_growth);
   visit("vertices", h.vertices);
   visit("triangles", h.triangles);
   visit("harmonics", h.harmonics);

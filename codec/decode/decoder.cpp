@@ -44,7 +44,7 @@ class Decoder::Impl {
  private:
   Status Take(Packet packet);
   Status TakeIFrame(std::span<const std::uint8_t> payload);
-  Status TakeGroup(std::vector<std::uint8_t> payload);
+  Status TakeGroup(std::span<const std::uint8_t> payload);
   Status TakeEnd(std::span<const std::uint8_t> payload);
   Status DecodeFrame(DecodedFrame& frame);
   Status Latch(Status status) {
@@ -61,18 +61,16 @@ class Decoder::Impl {
   std::vector<std::uint32_t> counts_;
   Shape shape_;  // the members below refer to it
   std::unique_ptr<Reconstructor> reconstructor_;
-  std::unique_ptr<Predictor> predictor_;
 
-  // The group being decoded.
-  std::vector<std::uint8_t> group_;
-  std::uint32_t frames_left_ = 0;
-  std::unique_ptr<RangeDecoder> range_;
-  std::unique_ptr<FrameCoder<RangeDecoder>> coder_;
+  // The group being decoded: its frames by time.
+  std::vector<FrameCoefficients> group_;
+  std::vector<bool> group_intra_;
+  std::size_t next_in_group_ = 0;
 };
 
 Status Decoder::Impl::Send(std::span<const std::uint8_t>& bytes) {
   if (error_) return *error_;
-  if (frames_left_ > 0) return Status::Ok();
+  if (next_in_group_ < group_.size()) return Status::Ok();
   if (ended_) return bytes.empty() ? Status::Ok() : Latch(Status::Corrupt("bytes after the end of the stream"));
   std::optional<Packet> packet;
   SAC_RETURN_IF_ERROR(Latch(packets_.Read(bytes, packet)));
@@ -98,7 +96,7 @@ Status Decoder::Impl::Take(Packet packet) {
       return TakeIFrame(packet.payload);
     case PacketType::kGroup:
       if (!mesh) return Status::Corrupt("a group before the I-frame");
-      return TakeGroup(std::move(packet.payload));
+      return TakeGroup(packet.payload);
     case PacketType::kEnd:
       if (!mesh) return Status::Corrupt("the end before the I-frame");
       return TakeEnd(packet.payload);
@@ -130,11 +128,10 @@ Status Decoder::Impl::TakeIFrame(std::span<const std::uint8_t> payload) {
   mesh = std::move(out);
   order = std::move(syntax.order);
   reconstructor_ = std::make_unique<Reconstructor>(shape_, *header);
-  predictor_ = std::make_unique<Predictor>(static_cast<ReferenceShape>(header->reference_shape), shape_.order.size());
   return Status::Ok();
 }
 
-Status Decoder::Impl::TakeGroup(std::vector<std::uint8_t> payload) {
+Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload) {
   ByteReader reader(payload);
   const std::uint32_t frames = reader.Varint();
   if (!reader.ok() || frames == 0) return Status::Corrupt("group: malformed number of frames");
@@ -143,12 +140,32 @@ Status Decoder::Impl::TakeGroup(std::vector<std::uint8_t> payload) {
                          std::to_string(limits_.frames_per_group));
   }
   if (frames > 0xffffffffu - frame_count_) return Status::Corrupt("group: too many frames");
-  const std::size_t start = reader.position();
-  group_ = std::move(payload);
-  range_ = std::make_unique<RangeDecoder>(std::span<const std::uint8_t>(group_).subspan(start));
-  coder_ = std::make_unique<FrameCoder<RangeDecoder>>(counts_);
-  predictor_->StartGroup();
-  frames_left_ = frames;
+  const std::uint32_t pyramid = reader.Varint();
+  if (!reader.ok() || pyramid == 0) return Status::Corrupt("group: malformed pyramid");
+  const bool previous = header->reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious);
+  if (previous && pyramid != 1) return Status::Corrupt("group: B-frames against the previous frame");
+
+  RangeDecoder range(payload.subspan(reader.position()));
+  FrameCoder<RangeDecoder> coder(counts_);
+  Predictor predictor(*header, shape_.order.size());
+  const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
+  group_.assign(frames, FrameCoefficients());
+  group_intra_.assign(frames, false);
+  next_in_group_ = frames;  // none is ready before all are parsed
+  for (const FrameSlot& slot : structure) {
+    const auto where = [&] { return "frame " + std::to_string(frame_count_ + slot.display) + ": "; };
+    FrameSyntax frame;
+    if (!coder.Code(range, slot, frame)) return Status::Corrupt(where() + "malformed coefficients");
+    if (previous && !frame.intra() && frame.slot.references != slot.references) {
+      return Status::Corrupt(where() + "not predicted from the frame before");
+    }
+    if (!predictor.Add(frame)) return Status::Corrupt(where() + "a coefficient out of range");
+    group_intra_[slot.display] = frame.intra();
+  }
+  if (!range.AtEnd()) return Status::Corrupt("group: bytes after the last frame");
+  for (std::size_t i = 0; i < structure.size(); ++i) group_[structure[i].display] = predictor.frames()[i];
+  if (!reconstructor_->StartGroup()) return Status::Corrupt("the first frame's shape is singular");
+  next_in_group_ = 0;
   return Status::Ok();
 }
 
@@ -166,7 +183,7 @@ Status Decoder::Impl::TakeEnd(std::span<const std::uint8_t> payload) {
 
 Status Decoder::Impl::Receive(DecodedFrame& frame) {
   if (error_) return *error_;
-  if (frames_left_ == 0) return Status::NeedMoreData();
+  if (next_in_group_ == group_.size()) return Status::NeedMoreData();
   try {
     return Latch(DecodeFrame(frame));
   } catch (const std::exception& e) {
@@ -175,24 +192,20 @@ Status Decoder::Impl::Receive(DecodedFrame& frame) {
 }
 
 Status Decoder::Impl::DecodeFrame(DecodedFrame& out) {
-  const std::string where = "frame " + std::to_string(frame_count_) + ": ";
-  FrameSyntax frame;
-  FrameCoefficients coefficients(shape_.order.size());
-  if (!coder_->Code(*range_, frame)) return Status::Corrupt(where + "malformed coefficients");
-  if (!predictor_->Add(frame, coefficients)) return Status::Corrupt(where + "a coefficient out of range");
-  if (!(frame.intra ? reconstructor_->StartIntra() : reconstructor_->StartPredicted())) {
-    return Status::Corrupt(where + "the reference shape is singular");
+  out.index = frame_count_;
+  out.intra = group_intra_[next_in_group_];
+  if (!reconstructor_->StartFrame(out.intra)) {
+    return Status::Corrupt("frame " + std::to_string(frame_count_) + ": the reference shape is singular");
   }
-  if (--frames_left_ == 0 && !range_->AtEnd()) return Status::Corrupt(where + "bytes after the last frame of a group");
-  out.index = frame_count_++;
-  out.intra = frame.intra;
-  out.positions = ToPositions(reconstructor_->Reconstruct(coefficients));
+  out.positions = ToPositions(reconstructor_->Reconstruct(group_[next_in_group_]));
+  ++next_in_group_;
+  ++frame_count_;
   return Status::Ok();
 }
 
 Status Decoder::Impl::Finish() {
   if (error_) return *error_;
-  if (!ended_ || frames_left_ > 0) {
+  if (!ended_ || next_in_group_ < group_.size()) {
     return Latch(Status::Corrupt("the stream is truncated after frame " + std::to_string(frame_count_)));
   }
   return Status::Ok();

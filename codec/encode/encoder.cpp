@@ -7,11 +7,12 @@
 #include <string>
 #include <utility>
 
-#include "codec/encode/frame_encoder.h"
+#include "codec/encode/group_encoder.h"
 #include "codec/encode/i_frame_encoder.h"
 #include "codec/encode/quality.h"
 #include "codec/shape.h"
 #include "format/frame_syntax.h"
+#include "format/group_structure.h"
 #include "format/packet.h"
 
 namespace sac {
@@ -23,6 +24,10 @@ Status CheckSettings(const EncoderSettings& s) {
   if (s.harmonics == 0) return Status::InvalidArgument("at least one harmonic is needed");
   if (s.group == 0 || s.group > Limits{}.frames_per_group) {
     return Status::InvalidArgument("a group holds from 1 to " + std::to_string(Limits{}.frames_per_group) + " frames");
+  }
+  if (s.pyramid == 0) return Status::InvalidArgument("a pyramid holds at least one frame");
+  if (!(s.level_growth >= 1 && s.level_growth <= 2)) {
+    return Status::InvalidArgument("the growth of steps from level to level must be from 1 to 2");
   }
   if (!positive(s.motion_step)) return Status::InvalidArgument("the motion step must be positive");
   if (!positive(s.displacement_step)) return Status::InvalidArgument("the displacement step must be positive");
@@ -145,16 +150,13 @@ class Encoder::Impl {
 
  private:
   void Append(PacketType type, std::span<const std::uint8_t> payload, double StreamBytes::*part);
-  void FlushGroup();
+  Status FlushGroup();
 
   EncoderSettings settings_;
   Shape shape_;
   std::vector<std::uint32_t> counts_;
-  std::unique_ptr<FrameEncoder> frames_;
-  std::unique_ptr<FrameCoder<RangeEncoder>> coder_;
-  RangeEncoder range_;
-  FrameBits group_bits_;
-  std::uint32_t group_frames_ = 0;
+  std::unique_ptr<GroupEncoder> encoder_;
+  std::vector<PositionMatrix> group_;  // frames that wait for the group to be full
   std::uint32_t frame_count_ = 0;
   bool finished_ = false;
 };
@@ -169,6 +171,7 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   const double displacement_step = settings.displacement_step.value_or(quality.displacement_step);
   header.reference_shape = static_cast<std::uint8_t>(settings.reference_shape);
   header.position_bits = static_cast<std::uint8_t>(settings.position_bits.value_or(quality.position_bits));
+  header.level_growth = static_cast<std::uint8_t>(std::lround(64 * settings.level_growth));
   header.vertices = static_cast<std::uint32_t>(first.positions.size());
   header.triangles = static_cast<std::uint32_t>(first.triangles.size());
   header.frame_rate_numerator = settings.frame_rate_numerator;
@@ -191,7 +194,7 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   SAC_RETURN_IF_ERROR(
       BuildShape(header, std::move(decoded.mesh), counts_, settings.samples_per_harmonic, Limits{}, shape_));
   syntax.fingerprint = shape_.basis.Fingerprint();
-  frames_ = std::make_unique<FrameEncoder>(shape_, header);
+  encoder_ = std::make_unique<GroupEncoder>(shape_, header);
 
   bytes.assign(std::begin(kMagic), std::end(kMagic));
   stream_bytes.header += 4;
@@ -213,44 +216,46 @@ Status Encoder::Impl::Send(std::span<const Vec3f> positions) {
                                    std::to_string(order.size()));
   }
   SAC_RETURN_IF_ERROR(CheckFinite(positions));
-  PositionMatrix ordered(static_cast<Eigen::Index>(order.size()), 3);
+  PositionMatrix& ordered = group_.emplace_back(static_cast<Eigen::Index>(order.size()), 3);
   for (std::size_t v = 0; v < order.size(); ++v) {
     const Vec3f& p = positions[order[v]];
     ordered.row(static_cast<Eigen::Index>(v)) << static_cast<double>(p[0]), static_cast<double>(p[1]),
         static_cast<double>(p[2]);
   }
-  if (group_frames_ == 0) {
-    coder_ = std::make_unique<FrameCoder<RangeEncoder>>(counts_);
-    range_ = RangeEncoder();
-    group_bits_ = {};
-    frames_->StartGroup();
-  }
-  FrameSyntax frame;
-  if (!frames_->Encode(ordered, frame) || !coder_->Code(range_, frame, &group_bits_)) {
-    return Status::InvalidArgument("the frame is too far from the first one for these steps");
-  }
   ++frame_count_;
-  if (++group_frames_ == settings_.group) FlushGroup();
-  return Status::Ok();
+  return group_.size() == settings_.group ? FlushGroup() : Status::Ok();
 }
 
-void Encoder::Impl::FlushGroup() {
+Status Encoder::Impl::FlushGroup() {
+  const auto frames = static_cast<std::uint32_t>(group_.size());
+  const std::uint32_t pyramid = settings_.reference_shape == ReferenceShape::kPrevious ? 1 : settings_.pyramid;
+  const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
+  std::vector<FrameSyntax> coded;
+  RangeEncoder range;
+  FrameCoder<RangeEncoder> coder(counts_);
+  FrameBits bits;
+  bool good = encoder_->Encode(group_, structure, coded);
+  for (std::size_t i = 0; good && i < coded.size(); ++i) good = coder.Code(range, structure[i], coded[i], &bits);
+  if (!good) return Status::InvalidArgument("the motion is too far from the first frame for these steps");
+
   ByteWriter payload;
-  payload.Varint(group_frames_);
-  payload.Bytes(range_.Finish());
+  payload.Varint(frames);
+  payload.Varint(pyramid);
+  payload.Bytes(range.Finish());
   const double before = stream_bytes.side;
   Append(PacketType::kGroup, payload.bytes(), &StreamBytes::side);
   // Whole bytes for the planes, the rest is side information.
-  const double motion = std::round(group_bits_.motion / 8), displacement = std::round(group_bits_.displacement / 8);
+  const double motion = std::round(bits.motion / 8), displacement = std::round(bits.displacement / 8);
   stream_bytes.side = std::max(before, stream_bytes.side - motion - displacement);
   stream_bytes.motion += motion;
   stream_bytes.displacement += displacement;
-  group_frames_ = 0;
+  group_.clear();
+  return Status::Ok();
 }
 
 Status Encoder::Impl::Finish() {
   if (finished_) return Status::InvalidArgument("the stream is finished");
-  if (group_frames_ > 0) FlushGroup();
+  if (!group_.empty()) SAC_RETURN_IF_ERROR(FlushGroup());
   ByteWriter payload;
   payload.Varint(frame_count_);
   Append(PacketType::kEnd, payload.bytes(), &StreamBytes::header);

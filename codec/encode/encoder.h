@@ -18,11 +18,13 @@ struct EncoderSettings {
   std::uint32_t harmonics = 200;           // over all components; at least one each, at most the vertices
   std::uint32_t samples_per_harmonic = 2;  // of the reduced basis (docs/harmonics.md); 0: exact harmonics
   std::uint32_t group = 128;               // frames between points of random access
-  ReferenceShape reference_shape = ReferenceShape::kKey;
-  std::optional<double> motion_step;        // radians and strain
-  std::optional<double> displacement_step;  // fraction of the first frame's RMS radius
-  std::optional<int> position_bits;         // of the I-frame's grid, 1..24
-  std::uint32_t frame_rate_numerator = 0;   // frames per second; 0: unknown
+  std::uint32_t pyramid = 16;              // frames of a hierarchy of B-frames; 1: P-frames only
+  double level_growth = 1.2;               // of the planes' steps from level to level of a pyramid, 1..2
+  ReferenceShape reference_shape = ReferenceShape::kKey;  // `previous` has P-frames only
+  std::optional<double> motion_step;                      // radians and strain
+  std::optional<double> displacement_step;                // fraction of the first frame's RMS radius
+  std::optional<int> position_bits;                       // of the I-frame's grid, 1..24
+  std::uint32_t frame_rate_numerator = 0;                 // frames per second; 0: unknown
   std::uint32_t frame_rate_denominator = 1;
   bool keep_order = false;  // put the input's vertex order in the stream
 };

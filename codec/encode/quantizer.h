@@ -1,6 +1,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -15,13 +16,13 @@ inline std::int32_t QuantizeWithDeadZone(double value) {
   return static_cast<std::int32_t>(value < 0 ? -magnitude : magnitude);
 }
 
-// residual[k, c] = target[k, c] / steps[k] - prediction[k, c], quantized; row-major like a plane.
-inline void QuantizePlane(const Eigen::MatrixXd& target, const Eigen::VectorXd& steps,
+// residual[k, c] = (target[k, c] / units[k] - prediction[k, c]) / step, quantized; row-major like a plane.
+inline void QuantizePlane(const Eigen::MatrixXd& target, const Eigen::VectorXd& units, std::int32_t step,
                           std::span<const std::int32_t> prediction, std::span<std::int32_t> residual) {
   std::size_t i = 0;
   for (Eigen::Index k = 0; k < target.rows(); ++k) {
     for (Eigen::Index c = 0; c < target.cols(); ++c, ++i) {
-      residual[i] = QuantizeWithDeadZone(target(k, c) / steps[k] - prediction[i]);
+      residual[i] = QuantizeWithDeadZone((target(k, c) / units[k] - prediction[i]) / step);
     }
   }
 }

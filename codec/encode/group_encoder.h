@@ -1,0 +1,61 @@
+#pragma once
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "codec/encode/projection.h"
+#include "codec/encode/triangle_fields.h"
+#include "codec/prediction.h"
+#include "codec/reconstruct.h"
+#include "codec/shape.h"
+#include "format/frame_syntax.h"
+#include "format/sequence_header.h"
+
+namespace sac {
+
+// Chooses the syntax of one group after another, asking the decoder's own Reconstructor what it gives.
+class GroupEncoder {
+ public:
+  // `shape` must outlive it.
+  GroupEncoder(const Shape& shape, const SequenceHeader& header);
+
+  // `frames`: by time, in decoded vertex order, model units. `structure`: of the same number of frames. Appends the
+  // frames in coding order. False when a value leaves the range of the format or a reference shape cannot be
+  // factorized.
+  bool Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
+              std::vector<FrameSyntax>& coded);
+
+ private:
+  // A rigid motion before quantization: rotation vector and translation in the header's steps, and how far a choice may
+  // stay from it.
+  struct RigidTarget {
+    std::array<double, 6> value;
+    double slack;
+  };
+  RigidTarget FitTarget(const PositionMatrix& positions);
+  // The motion plane's coefficients of `aligned` against the present reference shape, in real numbers.
+  Eigen::MatrixXd MeasureMotion(const PositionMatrix& aligned);
+  // Makes `frame` repeat an earlier one exactly if its input does; false if it does not.
+  bool RepeatFrame(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
+                   const Predictor& predictor, FrameSyntax& frame) const;
+  // Quantizes the planes' residuals; drops the references where coding from zero is cheaper.
+  void ChoosePlanes(const PositionMatrix& aligned, const Eigen::MatrixXd& motion_target, const Predictor& predictor,
+                    FrameSyntax& frame);
+  bool UsesKeyReference() const { return header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kKey); }
+
+  const Shape& shape_;
+  SequenceHeader header_;
+  TriangleFields fields_;
+  Projection projection_;
+  Eigen::VectorXd motion_units_;
+  Eigen::VectorXd displacement_units_;
+  Reconstructor reconstructor_;
+  Eigen::Vector3d last_rotation_ = Eigen::Vector3d::Zero();
+  // The last frame of the group before, to stand still across the border.
+  PositionMatrix last_positions_;
+  FrameCoefficients last_;
+};
+
+}  // namespace sac
