@@ -6,11 +6,12 @@
 
 #include <atomic>
 #include <cerrno>
-#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <system_error>
 #include <utility>
+
+#include "cli/temporary_files.h"
 
 namespace sac {
 namespace {
@@ -43,7 +44,7 @@ OutputFile& OutputFile::operator=(OutputFile&& other) noexcept {
 
 void OutputFile::Remove() {
   if (fd_ >= 0 && fd_ != STDOUT_FILENO) close(fd_);
-  if (!temporary_.empty()) unlink(temporary_.c_str());
+  if (!temporary_.empty()) RemoveTemporaryFile(temporary_);
   fd_ = -1;
   temporary_.clear();
 }
@@ -76,7 +77,7 @@ Status OutputFile::Open(const std::string& path) {
   }
   do {
     temporary_ = TemporaryName(final_);
-    fd_ = open(temporary_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    fd_ = CreateTemporaryFile(temporary_, O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   } while (fd_ < 0 && errno == EEXIST);
   if (fd_ < 0) {
     const int error = errno;
@@ -159,7 +160,7 @@ Status OutputFile::Close() {
 Status OutputFile::Commit() {
   SAC_RETURN_IF_ERROR(Close());
   if (temporary_.empty()) return Status::Ok();
-  if (std::rename(temporary_.c_str(), final_.c_str()) != 0) return Error(errno);
+  if (RenameTemporaryFile(temporary_, final_) != 0) return Error(errno);
   temporary_.clear();
   return Status::Ok();
 }
