@@ -1,0 +1,81 @@
+#include "cli/vertex_order.h"
+
+#include <span>
+#include <string_view>
+
+#include "cli/stream_input.h"
+#include "cli/text_scan.h"
+
+namespace sac {
+namespace {
+
+template <class T>
+std::vector<T> Reorder(const std::vector<T>& decoded, const VertexOrder& order) {
+  std::vector<T> out(decoded.size());
+  for (std::size_t v = 0; v < decoded.size(); ++v) out[order[v]] = decoded[v];
+  return out;
+}
+
+Status ReadText(const std::string& path, std::size_t most, std::string& text) {
+  StreamInput file;
+  SAC_RETURN_IF_ERROR(file.Open(path));
+  std::span<const std::uint8_t> chunk;
+  do {
+    SAC_RETURN_IF_ERROR(file.Read(chunk));
+    text.append(chunk.begin(), chunk.end());
+    if (text.size() > most) return Status::Corrupt(path + ": too large for an order map of this clip");
+  } while (!chunk.empty());
+  return Status::Ok();
+}
+
+}  // namespace
+
+Positions ToInputOrder(const Positions& decoded, const VertexOrder& order) { return Reorder(decoded, order); }
+
+Mesh ToInputOrder(const Mesh& decoded, const VertexOrder& order) {
+  Mesh mesh = decoded;
+  mesh.positions = Reorder(decoded.positions, order);
+  mesh.normals = Reorder(decoded.normals, order);
+  mesh.colors = Reorder(decoded.colors, order);
+  for (Triangle& triangle : mesh.triangles) {
+    for (std::uint32_t& vertex : triangle) vertex = order[vertex];
+  }
+  return mesh;
+}
+
+std::string FormatOrderMap(const VertexOrder& order) {
+  std::string text = "# sac order map, " + std::to_string(order.size()) + " vertices\n";
+  for (const std::uint32_t index : order) text += std::to_string(index) + '\n';
+  return text;
+}
+
+Status ReadOrderMap(const std::string& path, std::size_t vertices, VertexOrder& order) {
+  std::string text;
+  // An index takes up to 10 digits and a line end; the rest is for comments.
+  SAC_RETURN_IF_ERROR(ReadText(path, 16 * vertices + (1 << 20), text));
+  std::string_view rest = text;
+  std::vector<bool> seen(vertices);
+  order.clear();
+  for (std::size_t line = 1; !rest.empty(); ++line) {
+    std::string_view words = TakeLine(rest);
+    const std::string_view word = TakeWord(words);
+    if (word.empty() || word.front() == '#') continue;
+    const std::string where = path + ":" + std::to_string(line) + ": ";
+    std::int64_t index = 0;
+    if (!ParseInteger(word, index) || !TakeWord(words).empty()) return Status::Corrupt(where + "not an index");
+    if (index < 0 || static_cast<std::uint64_t>(index) >= vertices) {
+      return Status::Corrupt(where + "index " + std::string(word) + ", but the clip has " + std::to_string(vertices) +
+                             " vertices");
+    }
+    if (seen[static_cast<std::size_t>(index)]) {
+      return Status::Corrupt(where + "index " + std::string(word) + " for the second time");
+    }
+    seen[static_cast<std::size_t>(index)] = true;
+    order.push_back(static_cast<std::uint32_t>(index));
+  }
+  if (order.size() == vertices) return Status::Ok();
+  return Status::Corrupt(path + ": " + std::to_string(order.size()) + " indices, but the clip has " +
+                         std::to_string(vertices) + " vertices");
+}
+
+}  // namespace sac
