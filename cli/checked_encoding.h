@@ -1,0 +1,60 @@
+#pragma once
+
+#include <cstdint>
+#include <deque>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "cli/clip_input.h"
+#include "cli/output_file.h"
+#include "codec/encode/encoder.h"
+#include "format/status.h"
+#include "metrics/error_meter.h"
+
+namespace sac {
+
+// Encodes a clip and writes the stream; decodes it again as it comes, and measures it against the input. Memory holds
+// the frames of a group.
+class CheckedEncoding {
+ public:
+  struct Settings {
+    std::vector<std::string> inputs;  // as for ClipInput
+    std::string output;               // `-` is standard output
+    std::string order_map;            // where the order of the vertices goes; empty: nowhere
+    // Without a frame rate that of the input is taken.
+    EncoderSettings encoder;
+  };
+
+  explicit CheckedEncoding(const Settings& settings) : settings_(settings) {}
+
+  // The files get their names at the end. Every message names a file.
+  Status Run();
+
+  // Afterwards, what has come out.
+  const EncoderSettings& encoder_settings() const { return settings_.encoder; }
+  const SequenceHeader& header() const { return encoder_->header(); }
+  const StreamBytes& parts() const { return encoder_->stream_bytes(); }
+  std::uint64_t bytes() const { return bytes_; }
+  const DistortionMetrics& distortion() const { return distortion_; }
+
+ private:
+  Status Open();
+  Status Check();
+  Status EncodeUntilBytes(std::span<const std::uint8_t>& chunk);
+  Status AtInput(const std::string& where, const Status& status) const;
+
+  Settings settings_;
+  std::unique_ptr<ClipInput> input_;
+  std::unique_ptr<Encoder> encoder_;
+  OutputFile stream_, order_map_;
+  std::vector<std::uint8_t> chunk_;
+  std::uint64_t bytes_ = 0;
+  bool finished_ = false;
+  std::uint32_t sent_ = 0;
+  std::deque<Positions> undecoded_;  // frames sent that have not come back yet
+  DistortionMetrics distortion_;
+};
+
+}  // namespace sac

@@ -1,0 +1,86 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/clip_input.h"
+#include "cli/commands.h"
+#include "cli/distortion_report.h"
+#include "cli/progress.h"
+#include "metrics/error_meter.h"
+
+namespace sac {
+namespace {
+
+struct CompareOptions {
+  std::vector<std::string> original, decoded;
+  bool json = false;
+};
+
+Status Measure(const CompareOptions& options, ClipInput& original, DistortionMetrics& metrics) {
+  std::unique_ptr<ClipInput> decoded;
+  SAC_RETURN_IF_ERROR(ClipInput::Open(options.decoded, decoded));
+  const auto differ = [&](const char* what, std::size_t a, std::size_t b) {
+    return Status::InvalidArgument(options.decoded.front() + ": " + std::to_string(b) + " " + what + ", but " +
+                                   options.original.front() + " has " + std::to_string(a));
+  };
+  const std::size_t vertices = original.mesh().positions.size();
+  if (decoded->mesh().positions.size() != vertices) {
+    return differ("vertices", vertices, decoded->mesh().positions.size());
+  }
+  if (decoded->frame_count() != original.frame_count()) {
+    return differ("frames", original.frame_count(), decoded->frame_count());
+  }
+  Progress progress(original.frame_count());
+  ErrorMeter meter(original.mesh().triangles, vertices);
+  Positions a, b;
+  bool end = false;
+  for (std::uint32_t f = 0; f < original.frame_count(); ++f) {
+    SAC_RETURN_IF_ERROR(original.Next(a, end));
+    SAC_RETURN_IF_ERROR(decoded->Next(b, end));
+    meter.Add(a, b);
+    progress.FramesDone(f + 1);
+  }
+  metrics = meter.Result();
+  return Status::Ok();
+}
+
+Status Compare(const CompareOptions& options) {
+  std::unique_ptr<ClipInput> original;
+  SAC_RETURN_IF_ERROR(ClipInput::Open(options.original, original));
+  DistortionMetrics metrics;
+  SAC_RETURN_IF_ERROR(Measure(options, *original, metrics));
+  const std::size_t vertices = original->mesh().positions.size();
+  if (options.json) {
+    Json json;
+    AddDistortion(metrics, json);
+    json["frames"] = metrics.frames;
+    json["vertices"] = vertices;
+    std::fputs(JsonLine(json).c_str(), stdout);
+    return Status::Ok();
+  }
+  std::printf("%zu frames, %zu vertices\n", metrics.frames, vertices);
+  PrintDistortion(metrics, stdout);
+  return Status::Ok();
+}
+
+}  // namespace
+
+Command AddCompareCommand(CLI::App& app) {
+  auto options = std::make_shared<CompareOptions>();
+  CLI::App* command = app.add_subcommand("compare", "Measure how far one clip is from another.");
+  command->add_option("ORIGINAL", options->original, "a clip as for encode; its triangles are used")
+      ->required()
+      ->option_text("...");
+  command->add_option("--with", options->decoded, "a clip of as many frames and vertices, in the same order")
+      ->required()
+      ->option_text("DECODED...");
+  command->add_flag("--json", options->json, "print one JSON object");
+  command->footer(
+      "KG is in percent, STED and its parts have no unit, the largest error is in model units.\n\n"
+      "Example:\n"
+      "  sac compare body.obj walk.pc2 --with decoded.obj decoded.pc2\n");
+  return {command, [] { return Status::Ok(); }, [options] { return Compare(*options); }};
+}
+
+}  // namespace sac

@@ -1,0 +1,163 @@
+#include <charconv>
+#include <cstdint>
+#include <filesystem>
+#include <limits>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "cli/clip_output.h"
+#include "cli/commands.h"
+#include "cli/decoded_frames.h"
+#include "cli/overwriting.h"
+#include "cli/progress.h"
+#include "cli/stream_input.h"
+#include "cli/vertex_order.h"
+
+namespace sac {
+namespace {
+
+constexpr double kFpsOfUnknown = 24;
+
+struct FrameRange {
+  std::uint32_t begin = 0;
+  std::optional<std::uint32_t> end;  // all to the last if not given
+};
+
+struct DecodeOptions {
+  std::string input, output, order_map;
+  FrameRange frames;
+};
+
+bool ParseFrameNumber(std::string_view text, std::uint32_t& number) {
+  const auto result = std::from_chars(text.data(), text.data() + text.size(), number);
+  return result.ec == std::errc() && result.ptr == text.data() + text.size();
+}
+
+// `A:B`, `A:`, `:B` or `A`.
+bool ParseFrameRange(std::string_view text, FrameRange& range) {
+  range = {};
+  const std::size_t colon = text.find(':');
+  if (colon == std::string_view::npos) {
+    if (!ParseFrameNumber(text, range.begin) || range.begin == std::numeric_limits<std::uint32_t>::max()) return false;
+    range.end = range.begin + 1;
+    return true;
+  }
+  const std::string_view begin = text.substr(0, colon), end = text.substr(colon + 1);
+  if (begin.empty() && end.empty()) return false;
+  if (!begin.empty() && !ParseFrameNumber(begin, range.begin)) return false;
+  if (end.empty()) return true;
+  return ParseFrameNumber(end, range.end.emplace()) && range.begin < *range.end;
+}
+
+Status CheckOptions(const DecodeOptions& options) {
+  if (!ClipOutput::IsClipName(options.output)) {
+    return Status::InvalidArgument(options.output +
+                                   ": not a clip by its name (.pc2, .mdd, or a pattern of .obj, .ply or .off)");
+  }
+  if (options.order_map == "-" && options.input == "-") {
+    return Status::InvalidArgument("standard input cannot be the stream and the order map");
+  }
+  return CheckOverwriting({options.input, options.order_map.empty() ? "-" : options.order_map},
+                          FilesOfOutput(options.output));
+}
+
+class Decoding {
+ public:
+  explicit Decoding(const DecodeOptions& options) : options_(options) {}
+  Status Run();
+
+ private:
+  Status OpenOutput(const Decoder& decoder);
+
+  const DecodeOptions& options_;
+  VertexOrder order_;  // empty: as decoded
+  std::unique_ptr<ClipOutput> output_;
+};
+
+// Needs the decoded mesh.
+Status Decoding::OpenOutput(const Decoder& decoder) {
+  const Mesh& mesh = *decoder.mesh();
+  order_ = decoder.order();
+  if (!options_.order_map.empty()) {
+    SAC_RETURN_IF_ERROR(ReadOrderMap(options_.order_map, mesh.positions.size(), order_));
+  }
+  ClipOutput::Settings settings;
+  settings.fps = decoder.header()->frame_rate_numerator == 0 ? kFpsOfUnknown : decoder.header()->frames_per_second();
+  if (options_.frames.end) settings.frame_count = *options_.frames.end - options_.frames.begin;
+  return ClipOutput::Open(options_.output, order_.empty() ? mesh : ToInputOrder(mesh, order_), settings, output_);
+}
+
+Status Decoding::Run() {
+  const std::filesystem::path directory = std::filesystem::path(options_.output).parent_path();
+  if (std::error_code error; !directory.empty() && !std::filesystem::is_directory(directory, error)) {
+    return Status::IoError(options_.output + ": no such directory");  // better now than after the harmonics
+  }
+  StreamInput input;
+  SAC_RETURN_IF_ERROR(input.Open(options_.input));
+  Progress progress(options_.frames.end);
+  progress.Begin("harmonics");
+  DecodedFrames frames(input.name(), [&input](auto& chunk) { return input.Read(chunk); });
+  DecodedFrame frame;
+  std::uint32_t count = 0;
+  const FrameRange& range = options_.frames;
+  // What comes after the last frame wanted is not read.
+  for (bool end = false; count != range.end;) {
+    SAC_RETURN_IF_ERROR(frames.Next(frame, end));
+    if (end) break;
+    count = frame.index + 1;
+    progress.FramesDone(count);
+    if (frame.index < range.begin) continue;
+    if (!output_) SAC_RETURN_IF_ERROR(OpenOutput(frames.decoder()));
+    SAC_RETURN_IF_ERROR(
+        output_->Write(frame.index, order_.empty() ? frame.positions : ToInputOrder(frame.positions, order_)));
+  }
+  if (count == 0) return Status::InvalidArgument(input.name() + ": has no frames");
+  if (!output_ || (range.end && count != *range.end)) {
+    return Status::InvalidArgument(input.name() + ": --frames asks for frame " +
+                                   std::to_string(output_ ? *range.end - 1 : range.begin) + ", the last one is " +
+                                   std::to_string(count - 1));
+  }
+  return output_->Commit();
+}
+
+}  // namespace
+
+Command AddDecodeCommand(CLI::App& app) {
+  auto options = std::make_shared<DecodeOptions>();
+  CLI::App* command = app.add_subcommand("decode", "Decode a stream into meshes or a point cache.");
+  command->add_option("STREAM", options->input, "the stream to read; - is standard input")
+      ->required()
+      ->option_text(" ");
+  command
+      ->add_option("-o,--output", options->output,
+                   "clip.pc2 or clip.mdd, with the mesh beside it as clip.obj; a pattern of meshes, frame_%04d.obj, "
+                   ".ply or .off, one a frame; or a mesh for a single frame")
+      ->required()
+      ->option_text("OUT");
+  command
+      ->add_option(
+          "--frames",
+          [options](const CLI::results_t& words) {
+            if (ParseFrameRange(words.front(), options->frames)) return true;
+            throw CLI::ValidationError("--frames", "'" + words.front() + "' is no range of frames such as 10:20");
+          },
+          "frames A up to but without B, from 0; A: to the end, :B from the first, A one frame [all]")
+      ->option_text("A:B");
+  command
+      ->add_option("--order-map", options->order_map,
+                   "order the vertices by the map that encode --order-map wrote (instead of the stream's own order)")
+      ->option_text("FILE");
+  command->footer(
+      "The vertices come in the order of the encoder's input if the stream keeps it or a map gives it. An MDD has\n"
+      "times; where the stream has no frame rate they are those of 24 frames a second. Files get their names when all\n"
+      "of them are complete. With --frames the stream is read up to the last frame wanted.\n\n"
+      "Examples:\n"
+      "  sac decode walk.sac -o walk.pc2\n"
+      "  sac decode clip.sac -o frame_%04d.ply --frames 100:200\n"
+      "  sac decode clip.sac -o poster.obj --frames 17 --order-map clip.order\n");
+  return {command, [options] { return CheckOptions(*options); }, [options] { return Decoding(*options).Run(); }};
+}
+
+}  // namespace sac

@@ -1,0 +1,187 @@
+#include <unistd.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "cli/cache_file.h"
+#include "cli/checked_encoding.h"
+#include "cli/commands.h"
+#include "cli/distortion_report.h"
+#include "cli/frame_rate.h"
+#include "cli/mesh_file.h"
+#include "cli/number_option.h"
+#include "cli/overwriting.h"
+
+namespace sac {
+namespace {
+
+constexpr double kLeastStep = 1e-9, kLargestStep = 1e9;
+
+struct EncodeOptions {
+  CheckedEncoding::Settings settings;
+  std::string reference = "key";
+  bool json = false;
+};
+
+Status CheckOptions(EncodeOptions& options) {
+  CheckedEncoding::Settings& s = options.settings;
+  if (s.encoder.keep_order && !s.order_map.empty()) {
+    return Status::InvalidArgument("--keep-order and --order-map exclude each other");
+  }
+  if (s.output.empty()) return Status::InvalidArgument("--output: no name");
+  if (s.order_map == "-") return Status::InvalidArgument("--order-map: must be a file");
+  for (const std::string& path : {s.output, s.order_map}) {
+    if (IsReadableMeshName(path) || IsCacheName(path)) {
+      return Status::InvalidArgument(path + ": a mesh or a cache by its name, not a .sac stream or an order map");
+    }
+  }
+  if (s.output == "-" && isatty(STDOUT_FILENO) == 1) {
+    return Status::InvalidArgument("standard output is a terminal, which cannot show a stream");
+  }
+  if (options.reference == "previous") s.encoder.reference_shape = ReferenceShape::kPrevious;
+  std::vector<std::string> outputs{s.output};
+  if (!s.order_map.empty()) outputs.push_back(s.order_map);
+  return CheckOverwriting(FilesOfInput(s.inputs), outputs);
+}
+
+std::string RateText(const SequenceHeader& header) {
+  const std::string numerator = std::to_string(header.frame_rate_numerator);
+  return header.frame_rate_denominator == 1 ? numerator
+                                            : numerator + "/" + std::to_string(header.frame_rate_denominator);
+}
+
+Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, double seconds) {
+  // The encoder counts in whole bytes.
+  const auto whole = [](double bytes) { return std::llround(bytes); };
+  const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(); };
+  const SequenceHeader& header = encoding.header();
+  const DistortionMetrics& distortion = encoding.distortion();
+  Json json;
+  json["header"] = whole(encoding.parts().header);
+  json["i_frame"] = whole(encoding.parts().i_frame);
+  json["motion"] = whole(encoding.parts().motion);
+  json["displacement"] = whole(encoding.parts().displacement);
+  json["side"] = whole(encoding.parts().side);
+  json["bytes"] = encoding.bytes();
+  json["bpvf"] = 8 * static_cast<double>(encoding.bytes()) /
+                 (static_cast<double>(header.vertices) * static_cast<double>(distortion.frames));
+  AddDistortion(distortion, json);
+  json["frames"] = distortion.frames;
+  json["vertices"] = header.vertices;
+  json["triangles"] = header.triangles;
+  json["seconds"] = seconds;
+  const EncoderSettings& encoder = encoding.encoder_settings();
+  Json& settings = json["settings"];
+  settings["quality"] = encoder.quality;
+  settings["fps"] = header.frame_rate_numerator == 0 ? Json() : Json(RateText(header));
+  settings["harmonics"] = encoder.harmonics;
+  settings["group"] = encoder.group;
+  settings["reference"] = options.reference;
+  settings["motion_step"] = or_null(encoder.motion_step);  // null: from the quality
+  settings["displacement_step"] = or_null(encoder.displacement_step);
+  settings["position_bits"] = or_null(encoder.position_bits);
+  settings["keep_order"] = encoder.keep_order;
+  return json;
+}
+
+void PrintText(const Json& json, const CheckedEncoding& encoding, std::FILE* file) {
+  const SequenceHeader& header = encoding.header();
+  const std::size_t frames = encoding.distortion().frames;
+  const auto bytes = static_cast<double>(encoding.bytes());
+  const double raw = 12 * static_cast<double>(header.vertices) * static_cast<double>(frames);
+  std::fprintf(file, "%zu frames, %u vertices, %u triangles\n", frames, header.vertices, header.triangles);
+  std::fprintf(file, "%.0f bytes, 1 : %.1f of raw float32, %.4g bits a vertex and frame\n", bytes, raw / bytes,
+               json["bpvf"].get<double>());
+  for (const char* part : {"header", "i_frame", "motion", "displacement", "side"}) {
+    const auto size = json[part].get<double>();
+    std::fprintf(file, "  %-12s %10.0f bytes %5.1f %%\n", part, size, 100 * size / bytes);
+  }
+  PrintDistortion(encoding.distortion(), file);
+  std::fprintf(file, "%.2f seconds\n", json["seconds"].get<double>());
+}
+
+Status Encode(const EncodeOptions& options) {
+  const auto start = std::chrono::steady_clock::now();
+  CheckedEncoding encoding(options.settings);
+  SAC_RETURN_IF_ERROR(encoding.Run());
+  const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  std::FILE* file = IsStandardOutput(options.settings.output) ? stderr : stdout;
+  const Json json = ToJson(options, encoding, seconds);
+  if (options.json) {
+    std::fputs(JsonLine(json).c_str(), file);
+  } else {
+    PrintText(json, encoding, file);
+  }
+  return Status::Ok();
+}
+
+void AddFrameRate(CLI::App& app, EncoderSettings& encoder) {
+  const auto parse = [&encoder](const CLI::results_t& words) {
+    FrameRate rate;
+    if (!ParseFrameRate(words.front(), rate)) {
+      throw CLI::ValidationError("--fps", "'" + words.front() + "' is no frame rate");
+    }
+    encoder.frame_rate_numerator = rate.numerator;
+    encoder.frame_rate_denominator = rate.denominator;
+    return true;
+  };
+  app.add_option("--fps", parse,
+                 "frames a second: 24, 30000/1001, or 29.97, which is 30000/1001 [that of the input, if it has one]")
+      ->option_text("RATE");
+}
+
+void AddOptions(CLI::App& app, EncodeOptions& o) {
+  EncoderSettings& encoder = o.settings.encoder;
+  app.add_option("INPUT", o.settings.inputs,
+                 "a mesh and its point cache (mesh.obj clip.pc2, mesh.ply clip.mdd), or meshes one a frame, or a "
+                 "pattern of them (frame_%04d.obj); .obj, .ply, .off, .stl, .om")
+      ->required()
+      ->option_text("...");
+  app.add_option("-o,--output", o.settings.output, "the stream to write; - is standard output")
+      ->required()
+      ->option_text("FILE");
+  AddNumber(app, "--quality", encoder.quality, 0.0, 100.0, "0 (smallest) to 100 (nearest to the input) [50]");
+  AddFrameRate(app, encoder);
+  AddNumber(app, "--harmonics", encoder.harmonics, 1u, Limits{}.harmonics,
+            "manifold harmonics over all components; time and memory grow with them [200]");
+  AddNumber(app, "--group", encoder.group, 1u, Limits{}.frames_per_group,
+            "frames between points of random access [128]");
+  app.add_option("--reference", o.reference,
+                 "what motion is measured against: key, the first frame, or previous, the frame before [key]")
+      ->check(CLI::IsMember(std::vector<std::string>{"key", "previous"}))
+      ->option_text("SHAPE");
+  AddNumber(app, "--motion-step", encoder.motion_step, kLeastStep, kLargestStep,
+            "quantizer step of rotation and stretch, radians and strain [from the quality]");
+  AddNumber(app, "--displacement-step", encoder.displacement_step, kLeastStep, kLargestStep,
+            "quantizer step of displacement, as a fraction of the first frame's RMS radius [from the quality]");
+  AddNumber(app, "--position-bits", encoder.position_bits, 1, 24,
+            "bits of a coordinate of the first frame [from the quality]");
+  app.add_flag("--keep-order", encoder.keep_order, "put the order of the vertices in the stream");
+  app.add_option("--order-map", o.settings.order_map,
+                 "write the order of the vertices to a file, for decode --order-map")
+      ->option_text("FILE");
+  app.add_flag("--json", o.json, "report sizes in bytes, distortion and settings as one JSON object");
+}
+
+}  // namespace
+
+Command AddEncodeCommand(CLI::App& app) {
+  auto options = std::make_shared<EncodeOptions>();
+  CLI::App* command = app.add_subcommand(
+      "encode", "Encode a clip. The stream is decoded as it is written, and measured against the input.");
+  AddOptions(*command, *options);
+  command->footer(
+      "The report goes to standard output, or to standard error if the stream goes there. Without --keep-order or\n"
+      "--order-map the decoded clip has its vertices in another order.\n\n"
+      "Examples:\n"
+      "  sac encode body.obj walk.pc2 -o walk.sac\n"
+      "  sac encode frame_%04d.ply -o clip.sac --fps 29.97 --quality 70 --keep-order\n"
+      "  sac encode body.obj walk.mdd -o - --json | ssh host 'cat > walk.sac'\n");
+  return {command, [options] { return CheckOptions(*options); }, [options] { return Encode(*options); }};
+}
+
+}  // namespace sac

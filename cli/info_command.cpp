@@ -1,0 +1,141 @@
+#include <charconv>
+#include <cstdio>
+#include <memory>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include "cli/commands.h"
+#include "cli/distortion_report.h"
+#include "cli/stream_input.h"
+#include "cli/stream_summary.h"
+
+namespace sac {
+namespace {
+
+struct InfoOptions {
+  std::string input;
+  bool json = false;
+};
+
+std::string ShortestText(float value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
+}
+
+std::size_t GroupCount(const StreamSummary& summary) {
+  std::size_t groups = 0;
+  for (const PacketSummary& packet : summary.packets) groups += packet.type == PacketType::kGroup;
+  return groups;
+}
+
+// Seconds, where the stream has a frame rate.
+std::optional<double> Duration(const StreamSummary& summary) {
+  if (!summary.header || summary.header->frame_rate_numerator == 0) return std::nullopt;
+  return static_cast<double>(summary.frames) / summary.header->frames_per_second();
+}
+
+std::vector<std::string> Attributes(const IFrameSummary& i_frame) {
+  std::vector<std::string> names;
+  if (i_frame.texture_coordinates) names.push_back("texture_coordinates");
+  if (i_frame.normals) names.push_back("normals");
+  if (i_frame.colors) names.push_back("colors");
+  return names;
+}
+
+void PrintHeader(const SequenceHeader& header) {
+  VisitFields(header, [](const char* name, const auto& value) {
+    if constexpr (std::is_floating_point_v<std::decay_t<decltype(value)>>) {
+      std::printf("%-24s %s\n", name, ShortestText(value).c_str());
+    } else {
+      std::printf("%-24s %u\n", name, static_cast<unsigned>(value));
+    }
+  });
+}
+
+void PrintText(const std::string& name, const StreamSummary& summary) {
+  std::printf("%s: %llu bytes\n", name.c_str(), static_cast<unsigned long long>(summary.bytes));
+  if (summary.header) PrintHeader(*summary.header);
+  if (summary.i_frame) {
+    std::string attributes;
+    for (const std::string& attribute : Attributes(*summary.i_frame)) attributes += attribute + " ";
+    std::printf("%-24s %zu\n", "components", summary.i_frame->components);
+    std::printf("%-24s %s\n", "attributes", attributes.empty() ? "none" : attributes.c_str());
+    std::printf("%-24s %s\n", "order", summary.i_frame->order ? "the input's" : "the stream's own");
+  }
+  std::printf("%-24s %llu\n", "frames", static_cast<unsigned long long>(summary.frames));
+  std::printf("%-24s %zu\n", "groups", GroupCount(summary));
+  if (const auto seconds = Duration(summary)) std::printf("%-24s %.6g seconds\n", "duration", *seconds);
+  for (const PacketSummary& packet : summary.packets) {
+    std::printf("packet %-8s %10llu bytes", NameOf(packet.type), static_cast<unsigned long long>(packet.bytes));
+    if (packet.type == PacketType::kGroup) std::printf(" %6u frames", packet.frames);
+    std::printf("\n");
+  }
+}
+
+Json ToJson(const StreamSummary& summary, const Status& status) {
+  Json json;
+  json["bytes"] = summary.bytes;
+  json["complete"] = status.ok();
+  if (!status.ok()) json["error"] = status.message();
+  if (summary.header) {
+    // A float through its shortest text, so that 0.1f is 0.1.
+    VisitFields(*summary.header, [&json](const char* name, const auto& value) {
+      if constexpr (std::is_floating_point_v<std::decay_t<decltype(value)>>) {
+        json["header"][name] = Json::parse(ShortestText(value));
+      } else {
+        json["header"][name] = value;
+      }
+    });
+  }
+  if (summary.i_frame) {
+    json["components"] = summary.i_frame->components;
+    json["attributes"] = Attributes(*summary.i_frame);
+    json["keeps_order"] = summary.i_frame->order;
+  }
+  json["frames"] = summary.frames;
+  json["groups"] = GroupCount(summary);
+  const auto seconds = Duration(summary);
+  json["duration"] = seconds ? Json(*seconds) : Json();
+  json["packets"] = Json::array();
+  for (const PacketSummary& packet : summary.packets) {
+    Json& entry = json["packets"].emplace_back();
+    entry["type"] = NameOf(packet.type);
+    entry["bytes"] = packet.bytes;
+    if (packet.type == PacketType::kGroup) entry["frames"] = packet.frames;
+  }
+  return json;
+}
+
+Status Info(const InfoOptions& options) {
+  StreamInput input;
+  SAC_RETURN_IF_ERROR(input.Open(options.input));
+  StreamSummary summary;
+  Status status = Summarize(input, summary);
+  if (options.json) {
+    std::fputs(JsonLine(ToJson(summary, status)).c_str(), stdout);
+  } else if (status.ok() || summary.header) {
+    PrintText(input.name(), summary);
+  }
+  return status;
+}
+
+}  // namespace
+
+Command AddInfoCommand(CLI::App& app) {
+  auto options = std::make_shared<InfoOptions>();
+  CLI::App* command = app.add_subcommand("info", "Tell what a stream holds, without decoding its frames.");
+  command->add_option("STREAM", options->input, "the stream to read; - is standard input")
+      ->required()
+      ->option_text(" ");
+  command->add_flag("--json", options->json, "print one JSON object");
+  command->footer(
+      "Steps are in radians (motion, rotation) and in model units (displacement, translation, cell). Of a damaged or\n"
+      "truncated stream all is told that comes before the damage; the exit code is 1 then.\n\n"
+      "Example:\n"
+      "  sac info clip.sac\n");
+  return {command, [] { return Status::Ok(); }, [options] { return Info(*options); }};
+}
+
+}  // namespace sac

@@ -1,0 +1,93 @@
+#include "cli/stream_summary.h"
+
+#include <span>
+
+#include "codec/decode/draco_mesh.h"
+#include "format/bytes.h"
+#include "format/i_frame_syntax.h"
+#include "format/limits.h"
+
+namespace sac {
+namespace {
+
+Status TakeIFrame(std::span<const std::uint8_t> payload, StreamSummary& summary) {
+  IFrameSyntax syntax;
+  SAC_RETURN_IF_ERROR(ParseIFrame(payload, *summary.header, syntax));
+  DracoMesh mesh;  // holds the texture coordinates, if any; much quicker than harmonics
+  SAC_RETURN_IF_ERROR(DecodeDraco(syntax.mesh, *summary.header, mesh));
+  summary.i_frame = {syntax.harmonics.size(), !mesh.uv_triangles.empty(), syntax.has_normals, syntax.has_colors,
+                     !syntax.order.empty()};
+  return Status::Ok();
+}
+
+// The same order of packets that the decoder asks for.
+Status Take(const Packet& packet, PacketSummary& line, StreamSummary& summary) {
+  ByteReader reader(packet.payload);
+  switch (packet.type) {
+    case PacketType::kHeader: {
+      if (summary.header) return Status::Corrupt("a second sequence header");
+      SequenceHeader header;
+      SAC_RETURN_IF_ERROR(ParseSequenceHeader(packet.payload, Limits{}, header));
+      summary.header = header;
+      return Status::Ok();
+    }
+    case PacketType::kIFrame:
+      if (!summary.header || summary.i_frame) return Status::Corrupt("an I-frame out of place");
+      return TakeIFrame(packet.payload, summary);
+    case PacketType::kGroup:
+      if (!summary.i_frame) return Status::Corrupt("a group before the I-frame");
+      line.frames = reader.Varint();
+      if (!reader.ok() || line.frames == 0) return Status::Corrupt("group: malformed number of frames");
+      summary.frames += line.frames;
+      return Status::Ok();
+    case PacketType::kEnd:
+      if (!summary.i_frame) return Status::Corrupt("the end before the I-frame");
+      summary.ended = true;
+      if (const std::uint32_t frames = reader.Varint(); !reader.ok() || frames != summary.frames) {
+        return Status::Corrupt("end: " + std::to_string(frames) + " frames declared, " +
+                               std::to_string(summary.frames) + " found");
+      }
+      return Status::Ok();
+  }
+  return Status::Corrupt("unknown packet");
+}
+
+}  // namespace
+
+Status Summarize(StreamInput& input, StreamSummary& summary) {
+  const auto at = [&input](const Status& s) { return Status(s.code(), input.name() + ": " + s.message()); };
+  PacketReader reader(Limits{});
+  std::uint64_t begin = 4;  // after the magic
+  for (std::span<const std::uint8_t> chunk;;) {
+    if (chunk.empty()) SAC_RETURN_IF_ERROR(input.Read(chunk));
+    if (chunk.empty()) break;
+    if (summary.ended) return at(Status::Corrupt("bytes after the end of the stream"));
+    std::optional<Packet> packet;
+    const Status read = reader.Read(chunk, packet);
+    summary.bytes = reader.position();
+    if (!read.ok()) return at(read);
+    if (!packet) continue;
+    PacketSummary line{packet->type, reader.position() - begin};
+    begin = reader.position();
+    if (const Status s = Take(*packet, line, summary); !s.ok()) return at(s);
+    summary.packets.push_back(line);
+  }
+  if (summary.ended) return Status::Ok();
+  return at(Status::Corrupt("the stream is truncated after frame " + std::to_string(summary.frames)));
+}
+
+const char* NameOf(PacketType type) {
+  switch (type) {
+    case PacketType::kHeader:
+      return "header";
+    case PacketType::kIFrame:
+      return "i_frame";
+    case PacketType::kGroup:
+      return "group";
+    case PacketType::kEnd:
+      return "end";
+  }
+  return "unknown";
+}
+
+}  // namespace sac

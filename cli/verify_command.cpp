@@ -1,0 +1,48 @@
+#include <cstdio>
+#include <memory>
+#include <string>
+
+#include "cli/commands.h"
+#include "cli/decoded_frames.h"
+#include "cli/progress.h"
+#include "cli/stream_input.h"
+
+namespace sac {
+namespace {
+
+Status Verify(const std::string& path) {
+  StreamInput input;
+  SAC_RETURN_IF_ERROR(input.Open(path));
+  DecodedFrames frames(input.name(), [&input](auto& chunk) { return input.Read(chunk); });
+  DecodedFrame frame;
+  std::uint32_t count = 0;
+  {
+    Progress progress;
+    progress.Begin("harmonics");
+    for (bool end = false;;) {
+      SAC_RETURN_IF_ERROR(frames.Next(frame, end));
+      if (end) break;
+      count = frame.index + 1;
+      progress.FramesDone(count);
+    }
+  }
+  const SequenceHeader& header = *frames.decoder().header();
+  std::printf("%s: ok, %u frames, %u vertices, %u triangles, %llu bytes\n", input.name().c_str(), count,
+              header.vertices, header.triangles, static_cast<unsigned long long>(frames.bytes()));
+  return Status::Ok();
+}
+
+}  // namespace
+
+Command AddVerifyCommand(CLI::App& app) {
+  auto path = std::make_shared<std::string>();
+  CLI::App* command = app.add_subcommand("verify", "Decode a whole stream and say whether it is sound.");
+  command->add_option("STREAM", *path, "the stream to read; - is standard input")->required()->option_text(" ");
+  command->footer(
+      "The exit code is 0 for a sound stream and 1 for any other.\n\n"
+      "Example:\n"
+      "  sac verify clip.sac\n");
+  return {command, [] { return Status::Ok(); }, [path] { return Verify(*path); }};
+}
+
+}  // namespace sac
