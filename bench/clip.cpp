@@ -1,0 +1,46 @@
+#include "bench/clip.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "codec/encode/encoder.h"
+#include "format/status.h"
+#include "synth/synth.h"
+
+namespace sac::bench {
+namespace {
+
+void Require(const Status& status) {
+  if (status.ok()) return;
+  std::fprintf(stderr, "speed: %s\n", status.message().c_str());
+  std::exit(1);
+}
+
+Clip MakeClip(std::uint32_t vertices) {
+  SynthClip source;
+  Require(SynthClip::Create({.kind = SynthKind::kWalker, .vertices = vertices, .frames = kFrames}, source));
+  Clip clip;
+  clip.mesh = source.mesh();
+  std::unique_ptr<Encoder> encoder;
+  Require(Encoder::Create(clip.mesh, {}, encoder));
+  for (std::uint32_t f = 0; f < kFrames; ++f) {
+    clip.frames.push_back(source.Frame(f));
+    Require(encoder->Send(clip.frames.back()));
+  }
+  Require(encoder->Finish());
+  clip.stream = encoder->TakeBytes();
+  return clip;
+}
+
+}  // namespace
+
+const Clip& WalkerClip(std::uint32_t vertices) {
+  static std::map<std::uint32_t, Clip> clips;
+  const auto found = clips.find(vertices);
+  return found != clips.end() ? found->second : clips.emplace(vertices, MakeClip(vertices)).first->second;
+}
+
+}  // namespace sac::bench

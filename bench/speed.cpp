@@ -1,0 +1,184 @@
+// Encoding and decoding speed on one thread. The argument of a benchmark is the number of vertices asked for.
+#include <benchmark/benchmark.h>
+
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <span>
+
+#include "bench/clip.h"
+#include "bench/peak_memory.h"
+#include "codec/decode/decoder.h"
+#include "codec/decode/i_frame.h"
+#include "codec/encode/encoder.h"
+#include "codec/reconstruct.h"
+#include "codec/shape.h"
+#include "format/i_frame_syntax.h"
+#include "format/packet.h"
+#include "format/sequence_header.h"
+#include "format/status.h"
+
+namespace sac::bench {
+namespace {
+
+void Require(const Status& status) {
+  if (status.ok()) return;
+  std::fprintf(stderr, "speed: %s\n", status.message().c_str());
+  std::exit(1);
+}
+
+std::uint32_t Vertices(const benchmark::State& state) { return static_cast<std::uint32_t>(state.range(0)); }
+
+void CountVertices(benchmark::State& state, const Clip& clip) {
+  state.counters["vertices"] = static_cast<double>(clip.mesh.positions.size());
+}
+
+// The header and the I-frame of a clip, to start step by step as the decoder does.
+struct StreamStart {
+  SequenceHeader header;
+  IFrameSyntax syntax;
+  DecodedIFrame decoded;
+
+  explicit StreamStart(const Clip& clip) {
+    std::span<const std::uint8_t> bytes = clip.stream;
+    PacketReader packets{Limits{}};
+    std::optional<Packet> packet;
+    Require(packets.Read(bytes, packet));
+    Require(ParseSequenceHeader(packet.value().payload, {}, header));
+    Require(packets.Read(bytes, packet));
+    Require(ParseIFrame(packet.value().payload, header, syntax));
+    DecodeMesh();
+  }
+
+  void DecodeMesh() {
+    DracoMesh draco;
+    Require(DecodeDraco(syntax.mesh, header, draco));
+    Require(AssembleIFrame(syntax, header, std::move(draco), decoded));
+  }
+
+  Shape MakeShape() const {
+    Shape shape;
+    Require(BuildShape(header, decoded.mesh, syntax.harmonics, syntax.samples_per_harmonic, {}, shape));
+    return shape;
+  }
+};
+
+// Takes bytes up to and with the first frame.
+DecodedFrame DecodeFirst(Decoder& decoder, std::span<const std::uint8_t>& bytes) {
+  DecodedFrame frame;
+  do {
+    Require(decoder.Send(bytes));
+  } while (!decoder.Receive(frame).ok());
+  return frame;
+}
+
+// A player's wait: from the first byte to the first frame.
+void StartDecoder(benchmark::State& state) {
+  const Clip& clip = WalkerClip(Vertices(state));
+  for ([[maybe_unused]] auto step : state) {
+    Decoder decoder;
+    std::span<const std::uint8_t> bytes = clip.stream;
+    benchmark::DoNotOptimize(DecodeFirst(decoder, bytes));
+  }
+  CountVertices(state, clip);
+}
+
+// The wait's parts.
+void StartMesh(benchmark::State& state) {
+  const Clip& clip = WalkerClip(Vertices(state));
+  StreamStart start(clip);
+  for ([[maybe_unused]] auto step : state) start.DecodeMesh();
+  CountVertices(state, clip);
+}
+
+void StartHarmonics(benchmark::State& state) {
+  const Clip& clip = WalkerClip(Vertices(state));
+  const StreamStart start(clip);
+  for ([[maybe_unused]] auto step : state) benchmark::DoNotOptimize(start.MakeShape());
+  CountVertices(state, clip);
+}
+
+void StartFactorization(benchmark::State& state) {
+  const Clip& clip = WalkerClip(Vertices(state));
+  const StreamStart start(clip);
+  const Shape shape = start.MakeShape();
+  for ([[maybe_unused]] auto step : state) {
+    Reconstructor reconstructor(shape, start.header);
+    if (!reconstructor.StartIntra()) state.SkipWithError("singular");
+  }
+  CountVertices(state, clip);
+}
+
+// All frames after the first.
+void DecodeFrames(benchmark::State& state) {
+  const Clip& clip = WalkerClip(Vertices(state));
+  DecodedFrame frame;
+  PeakMemory memory;
+  memory.Start();
+  std::int64_t frames = 0;
+  for ([[maybe_unused]] auto step : state) {
+    state.PauseTiming();
+    std::optional<Decoder> decoder(std::in_place);
+    std::span<const std::uint8_t> bytes = clip.stream;
+    DecodeFirst(*decoder, bytes);
+    state.ResumeTiming();
+    while (!bytes.empty()) {
+      while (decoder->Receive(frame).ok()) ++frames;
+      Require(decoder->Send(bytes));
+    }
+    Require(decoder->Finish());
+    state.PauseTiming();
+    decoder.reset();
+    state.ResumeTiming();
+  }
+  state.counters["frames/s"] = benchmark::Counter(static_cast<double>(frames), benchmark::Counter::kIsRate);
+  state.counters["peak_MB"] = memory.Megabytes();
+  CountVertices(state, clip);
+}
+
+void StartEncoder(benchmark::State& state) {
+  const Clip& clip = WalkerClip(Vertices(state));
+  for ([[maybe_unused]] auto step : state) {
+    std::unique_ptr<Encoder> encoder;
+    Require(Encoder::Create(clip.mesh, {}, encoder));
+  }
+  CountVertices(state, clip);
+}
+
+// All frames, the encoder's start left out.
+void EncodeFrames(benchmark::State& state) {
+  const Clip& clip = WalkerClip(Vertices(state));
+  PeakMemory memory;
+  memory.Start();
+  double bytes = 0;
+  for ([[maybe_unused]] auto step : state) {
+    state.PauseTiming();
+    std::unique_ptr<Encoder> encoder;
+    Require(Encoder::Create(clip.mesh, {}, encoder));
+    state.ResumeTiming();
+    for (const Positions& frame : clip.frames) Require(encoder->Send(frame));
+    Require(encoder->Finish());
+    bytes = static_cast<double>(encoder->TakeBytes().size());
+    state.PauseTiming();
+    encoder.reset();
+    state.ResumeTiming();
+  }
+  state.counters["frames/s"] = benchmark::Counter(kFrames, benchmark::Counter::kIsIterationInvariantRate);
+  state.counters["peak_MB"] = memory.Megabytes();
+  state.counters["bpvf"] = 8 * bytes / (kFrames * static_cast<double>(clip.mesh.positions.size()));
+  CountVertices(state, clip);
+}
+
+void Sizes(benchmark::internal::Benchmark* b) { b->Arg(2000)->Arg(10000)->Arg(40000)->Unit(benchmark::kMillisecond); }
+
+BENCHMARK(StartDecoder)->Apply(Sizes);
+BENCHMARK(StartMesh)->Apply(Sizes);
+BENCHMARK(StartHarmonics)->Apply(Sizes);
+BENCHMARK(StartFactorization)->Apply(Sizes);
+BENCHMARK(DecodeFrames)->Apply(Sizes);
+BENCHMARK(StartEncoder)->Apply(Sizes);
+BENCHMARK(EncodeFrames)->Apply(Sizes);
+
+}  // namespace
+}  // namespace sac::bench
