@@ -20,8 +20,8 @@ CLI::Option* AddNumber(CLI::App& app, const std::string& name, Target& target, T
     const bool whole = result.ec == std::errc() && result.ptr == word.data() + word.size();
     if (!whole || !(value >= low && value <= high)) {
       std::ostringstream reason;
-      reason << "'" << word << "' is no " << (std::is_integral_v<T> ? "whole " : "") << "number from " << low << " to "
-             << high;
+      reason << "'" << word << "' is not a " << (std::is_integral_v<T> ? "whole " : "") << "number from " << low
+             << " to " << high;
       throw CLI::ValidationError(name, reason.str());
     }
     target = value;

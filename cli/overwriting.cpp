@@ -26,8 +26,11 @@ bool SameFile(const std::string& a, const std::string& b) {
   if (std::filesystem::exists(a, error) && std::filesystem::exists(b, error)) {
     return std::filesystem::equivalent(a, b, error) && std::filesystem::is_regular_file(a, error);
   }
-  const auto canonical_a = std::filesystem::weakly_canonical(a, error);
-  return !error && canonical_a == std::filesystem::weakly_canonical(b, error) && !error;
+  // Absolute first, because the canonical form of a relative path that does not exist stays relative.
+  const auto canonical = [&error](const std::string& path) {
+    return std::filesystem::weakly_canonical(std::filesystem::absolute(path, error), error);
+  };
+  return canonical(a) == canonical(b) && !error;
 }
 
 }  // namespace
