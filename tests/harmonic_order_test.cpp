@@ -36,16 +36,6 @@ TEST(HarmonicOrder, NamesEveryHarmonicOnce) {
   for (const auto& [c, k] : order) EXPECT_LT(k, counts[c]);
 }
 
-TEST(HarmonicOrder, BandsRiseWithTheFrequency) {
-  std::uint8_t band = 0;
-  for (const HarmonicIndex& i : HarmonicOrder(std::vector<std::uint32_t>{8192})) {
-    EXPECT_GE(i.band, band);
-    EXPECT_LE(i.band, band + 1);
-    band = i.band;
-  }
-  EXPECT_EQ(band, 6);
-}
-
 TEST(HarmonicOrder, OfHugeCountsDoesNotOverflow) {
   // 70000 * 69999 is over 32 bits.
   const auto order = Order({70000, 69999});
