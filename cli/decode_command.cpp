@@ -85,7 +85,10 @@ Status Decoding::OpenOutput(const Decoder& decoder) {
   }
   ClipOutput::Settings settings;
   settings.fps = decoder.header()->frame_rate_numerator == 0 ? kFpsOfUnknown : decoder.header()->frames_per_second();
-  if (options_.frames.end) settings.frame_count = *options_.frames.end - options_.frames.begin;
+  // A pipe cannot be told the number at the end. Elsewhere it is not promised before the stream has shown as many.
+  if (std::error_code error; options_.frames.end && std::filesystem::is_fifo(options_.output, error)) {
+    settings.frame_count = *options_.frames.end - options_.frames.begin;
+  }
   return ClipOutput::Open(options_.output, order_.empty() ? mesh : ToInputOrder(mesh, order_), settings, output_);
 }
 

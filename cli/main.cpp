@@ -1,3 +1,6 @@
+#include <fcntl.h>
+#include <unistd.h>
+
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
@@ -18,6 +21,14 @@ namespace sac {
 namespace {
 
 enum ExitCode { kOk = 0, kDataError = 1, kUsageError = 2 };
+
+// A file must not become standard output, and be written to, because that was closed.
+void OccupyStandardStreams() {
+  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    // The lowest free number is taken; reading from or writing to it is an error as before.
+    if (fcntl(fd, F_GETFD) < 0) (void)!open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
+  }
+}
 
 ExitCode Fail(ExitCode code, std::string message) {
   std::replace(message.begin(), message.end(), '\n', ' ');
@@ -88,8 +99,10 @@ ExitCode Run(int argc, char** argv) {
 }  // namespace sac
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // a write then fails, and is reported
+  // A write that cannot be done then fails, and is reported.
+  std::signal(SIGPIPE, SIG_IGN);
   std::signal(SIGXFSZ, SIG_IGN);
+  sac::OccupyStandardStreams();
   try {
     sac::RemoveTemporaryFilesOnSignals();
     return sac::FlushOutput(sac::Run(argc, argv));

@@ -146,8 +146,19 @@ TEST_F(DecodeTest, Ranges) {
                 "clip.sac: --frames asks for frame 12, the last one is 11");
   ExpectFailure({"decode", "clip.sac", "-o", "x.mdd", "--frames", "5:13"}, 1,
                 "clip.sac: --frames asks for frame 12, the last one is 11");
+  ExpectFailure({"decode", "clip.sac", "-o", "x.mdd", "--frames", "0:4294967295"}, 1,
+                "clip.sac: --frames asks for frame 4294967294, the last one is 11");
   ExpectFailure({"decode", "clip.sac", "-o", "x.ply", "--frames", "3:5"}, 1,
                 "x.ply: more than one frame needs a cache or a pattern such as x_%04d.obj");
+}
+
+TEST_F(DecodeTest, IntoAPipe) {
+  Encode("clip.sac");
+  Good({"decode", "clip.sac", "-o", "part.mdd", "--frames", "2:5"});
+  const Outcome outcome = Shell("mkfifo pipe.mdd; cat pipe.mdd > got.mdd & " + Quote(SAC_EXECUTABLE) +
+                                " decode clip.sac -o pipe.mdd --frames 2:5; echo $?; wait");
+  EXPECT_EQ(outcome.out, "0\n");
+  EXPECT_EQ(Read("got.mdd"), Read("part.mdd"));
 }
 
 TEST_F(DecodeTest, BadStreams) {

@@ -213,6 +213,13 @@ TEST_F(EncodeTest, OutputThatCannotBeWritten) {
   const Outcome full = Shell(Quote(SAC_EXECUTABLE) + " encode in.obj in.pc2 -o - --harmonics 5 2>&1 > /dev/full");
   EXPECT_EQ(full.code, 1);
   EXPECT_EQ(full.out, "sac: standard output: No space left on device\n");
+  // The stream must not take the place of a standard output that is closed, and have the report appended.
+  Encode("clip.sac");
+  const std::string to_closed = " encode in.obj in.pc2 -o closed.sac --harmonics 30 --group 5 2>&1 >&-";
+  const Outcome no_output = Shell(Quote(SAC_EXECUTABLE) + to_closed);
+  EXPECT_EQ(no_output.code, 1);
+  EXPECT_EQ(no_output.out, "sac: standard output: Bad file descriptor\n");
+  EXPECT_EQ(Read("closed.sac"), Read("clip.sac"));
   // The reader has gone before the first byte.
   const Outcome closed = Shell("{ " + Quote(SAC_EXECUTABLE) +
                                " encode in.obj in.pc2 -o - --harmonics 5 2> closed.err; echo $? > closed.code; } | :");
