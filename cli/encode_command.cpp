@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/cache_file.h"
@@ -54,18 +55,21 @@ std::string RateText(const SequenceHeader& header) {
                                             : numerator + "/" + std::to_string(header.frame_rate_denominator);
 }
 
+// They add up to the stream. The encoder counts in whole bytes.
+std::vector<std::pair<const char*, long long>> Parts(const StreamBytes& parts) {
+  return {{"header", std::llround(parts.header)},
+          {"i_frame", std::llround(parts.i_frame)},
+          {"motion", std::llround(parts.motion)},
+          {"displacement", std::llround(parts.displacement)},
+          {"side", std::llround(parts.side)}};
+}
+
 Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, double seconds) {
-  // The encoder counts in whole bytes.
-  const auto whole = [](double bytes) { return std::llround(bytes); };
   const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(); };
   const SequenceHeader& header = encoding.header();
   const DistortionMetrics& distortion = encoding.distortion();
   Json json;
-  json["header"] = whole(encoding.parts().header);
-  json["i_frame"] = whole(encoding.parts().i_frame);
-  json["motion"] = whole(encoding.parts().motion);
-  json["displacement"] = whole(encoding.parts().displacement);
-  json["side"] = whole(encoding.parts().side);
+  for (const auto& [part, bytes] : Parts(encoding.parts())) json[part] = bytes;
   json["bytes"] = encoding.bytes();
   json["bpvf"] = 8 * static_cast<double>(encoding.bytes()) /
                  (static_cast<double>(header.vertices) * static_cast<double>(distortion.frames));
@@ -96,9 +100,8 @@ void PrintText(const Json& json, const CheckedEncoding& encoding, std::FILE* fil
   std::fprintf(file, "%zu frames, %u vertices, %u triangles\n", frames, header.vertices, header.triangles);
   std::fprintf(file, "%.0f bytes, 1 : %.1f of raw float32, %.4g bits a vertex and frame\n", bytes, raw / bytes,
                json["bpvf"].get<double>());
-  for (const char* part : {"header", "i_frame", "motion", "displacement", "side"}) {
-    const auto size = json[part].get<double>();
-    std::fprintf(file, "  %-12s %10.0f bytes %5.1f %%\n", part, size, 100 * size / bytes);
+  for (const auto& [part, size] : Parts(encoding.parts())) {
+    std::fprintf(file, "  %-12s %10lld bytes %5.1f %%\n", part, size, 100 * static_cast<double>(size) / bytes);
   }
   PrintDistortion(encoding.distortion(), file);
   std::fprintf(file, "%.2f seconds\n", json["seconds"].get<double>());
