@@ -57,11 +57,11 @@ std::string RateText(const SequenceHeader& header) {
 
 // They add up to the stream. The encoder counts in whole bytes.
 std::vector<std::pair<const char*, long long>> Parts(const StreamBytes& parts) {
-  return {{"header", std::llround(parts.header)},
-          {"i_frame", std::llround(parts.i_frame)},
-          {"motion", std::llround(parts.motion)},
-          {"displacement", std::llround(parts.displacement)},
-          {"side", std::llround(parts.side)}};
+  std::vector<std::pair<const char*, long long>> out = {{"header", std::llround(parts.header)},
+                                                        {"i_frame", std::llround(parts.i_frame)}};
+  for (std::size_t p = 0; p < kPlanes; ++p) out.emplace_back(kPlaneNames[p], std::llround(parts.planes[p]));
+  out.emplace_back("side", std::llround(parts.side));
+  return out;
 }
 
 Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, double seconds) {

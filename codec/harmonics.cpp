@@ -196,6 +196,7 @@ Status ComputeHarmonics(const EdgeList& edges, std::span<const double> weights, 
                         std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic,
                         HarmonicBasis& basis) {
   basis.components.clear();
+  basis.order = HarmonicOrder(counts);
   for (std::size_t i = 0; i < components.size(); ++i) {
     ComponentHarmonics& c = basis.components.emplace_back();
     c.component = components[i];

@@ -8,11 +8,13 @@
 
 #include "codec/components.h"
 #include "codec/laplacian.h"
+#include "format/harmonic_order.h"
 #include "format/status.h"
 
 namespace sac {
 
-// The manifold harmonics of one component: eigenfunctions of its Laplace-Beltrami operator (Vallet and Levy 2008).
+// The manifold harmonics of one component, or of a patch: eigenfunctions of its Laplace-Beltrami operator (Vallet and
+// Levy 2008).
 struct ComponentHarmonics {
   Component component;
   Eigen::MatrixXd vectors;      // count x harmonics, unit mean square
@@ -21,6 +23,7 @@ struct ComponentHarmonics {
 
 struct HarmonicBasis {
   std::vector<ComponentHarmonics> components;
+  std::vector<HarmonicIndex> order;  // of a plane's rows
 
   // Two numbers that differ when the basis does: the sum of eigenvalues, and a fixed generic bilinear form of the
   // vectors (spec.md 6.6).
@@ -31,7 +34,8 @@ struct HarmonicBasis {
 bool SameFingerprint(const std::array<float, 2>& a, const std::array<float, 2>& b);
 
 // Computes the basis as spec.md 6.4 defines it. `grid` holds the vertices' integer positions, `masses` and `weights`
-// are of the decoded first frame. kCorrupt when an eigenvalue problem does not converge.
+// are of the decoded first frame; the components may also be patches. kCorrupt when an eigenvalue problem does not
+// converge.
 Status ComputeHarmonics(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,
                         std::span<const std::array<std::uint32_t, 3>> grid, std::span<const Component> components,
                         std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic,

@@ -79,6 +79,7 @@ Eigen::SparseMatrix<double> LaplacianMatrix(std::span<const std::array<std::uint
   std::vector<Eigen::Triplet<double>> entries;
   Eigen::VectorXd diagonal = Eigen::VectorXd::Zero(count);
   for (std::size_t e = 0; e < ends.size(); ++e) {
+    if (ends[e][1] >= first + count) continue;  // leaves a patch
     const double w = weights[e];
     const auto a = static_cast<int>(ends[e][0] - first), b = static_cast<int>(ends[e][1] - first);
     entries.emplace_back(b, a, -w);

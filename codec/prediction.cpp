@@ -26,37 +26,41 @@ void Mean(Values& a, const Values& b) {
 
 }  // namespace
 
-std::int32_t LevelStep(const SequenceHeader& header, std::uint32_t level) {
+std::int32_t LevelStep(const SequenceHeader& header, std::size_t plane, std::uint32_t level) {
   std::int32_t step = kCoefficientsPerStep;
+  if (plane == kCorrection) return step;
   for (std::uint32_t i = 0; i < level && step < 4096; ++i) step = (step * header.level_growth + 32) / 64;
   return std::min(step, 4096);
 }
 
-Predictor::Predictor(const SequenceHeader& header, std::size_t harmonics) : header_(header), harmonics_(harmonics) {}
+Predictor::Predictor(const SequenceHeader& header, const PlaneLayouts& layouts)
+    : header_(header), zeros_(EmptyPlanes(layouts)) {}
+
+bool Predictor::Predicts(std::size_t plane) const {
+  // A correction has nothing in common with another frame's. Against the previous reconstruction, the other planes are
+  // differences already (Wang et al. 2015, section 4).
+  return plane != kCorrection && header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kKey);
+}
 
 FrameCoefficients Predictor::Predict(const std::vector<std::uint32_t>& references) const {
-  if (references.empty()) return FrameCoefficients(harmonics_);
-  FrameCoefficients prediction = frames_[references[0]];
-  if (references.size() == 2) {
-    const FrameCoefficients& other = frames_[references[1]];
-    Mean(prediction.rigid, other.rigid);
-    Mean(prediction.motion, other.motion);
-    Mean(prediction.displacement, other.displacement);
-  }
-  // Against the previous reconstruction, the planes are already differences (Wang et al. 2015, section 4).
-  if (header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious)) {
-    std::fill(prediction.motion.begin(), prediction.motion.end(), 0);
-    std::fill(prediction.displacement.begin(), prediction.displacement.end(), 0);
+  if (references.empty()) return {{}, zeros_};
+  const FrameCoefficients& first = frames_[references[0]];
+  const FrameCoefficients& second = frames_[references.back()];
+  FrameCoefficients prediction{first.rigid, zeros_};
+  if (references.size() == 2) Mean(prediction.rigid, second.rigid);
+  for (std::size_t p = 0; p < kPlanes; ++p) {
+    if (!Predicts(p)) continue;
+    prediction.planes[p] = first.planes[p];
+    if (references.size() == 2) Mean(prediction.planes[p], second.planes[p]);
   }
   return prediction;
 }
 
 bool Predictor::Add(const FrameSyntax& frame) {
   FrameCoefficients sum = Predict(frame.slot.references);
-  const std::int32_t step = LevelStep(header_, frame.slot.level);
-  if (!AddInto(sum.rigid, frame.rigid, 1) || !AddInto(sum.motion, frame.motion, step) ||
-      !AddInto(sum.displacement, frame.displacement, step)) {
-    return false;
+  if (!AddInto(sum.rigid, frame.rigid, 1)) return false;
+  for (std::size_t p = 0; p < kPlanes; ++p) {
+    if (!AddInto(sum.planes[p], frame.planes[p], LevelStep(header_, p, frame.slot.level))) return false;
   }
   frames_.push_back(std::move(sum));
   return true;

@@ -1,6 +1,7 @@
 #include "codec/reconstruct.h"
 
 #include <algorithm>
+#include <array>
 #include <utility>
 
 #include "codec/deformation.h"
@@ -8,49 +9,50 @@
 namespace sac {
 namespace {
 
-// The vertices of the mesh over those of the component, for each harmonic.
-Eigen::ArrayXd ComponentShare(const Shape& shape) {
-  Eigen::ArrayXd share(static_cast<Eigen::Index>(shape.order.size()));
-  for (std::size_t i = 0; i < shape.order.size(); ++i) {
-    share[static_cast<Eigen::Index>(i)] =
-        static_cast<double>(shape.vertices()) / shape.components[shape.order[i].component].count;
-  }
-  return share;
+constexpr std::array kHarmonicPlanes = {kMotion, kDisplacement, kDetail};
+
+const HarmonicBasis& BasisOf(const Shape& shape, Plane plane) {
+  return plane == kDetail ? shape.patch_basis : shape.basis;
 }
 
 }  // namespace
 
-Eigen::VectorXd MotionSteps(const Shape& shape, const SequenceHeader& header) {
-  return static_cast<double>(header.motion_step) / kCoefficientsPerStep * ComponentShare(shape).sqrt().sqrt();
+Eigen::VectorXd PlaneUnits(const Shape& shape, const SequenceHeader& header, Plane plane) {
+  const HarmonicBasis& basis = BasisOf(shape, plane);
+  Eigen::ArrayXd counts(static_cast<Eigen::Index>(basis.order.size()));
+  for (std::size_t i = 0; i < basis.order.size(); ++i) {
+    counts[static_cast<Eigen::Index>(i)] = basis.components[basis.order[i].component].component.count;
+  }
+  const Eigen::ArrayXd share = static_cast<double>(shape.vertices()) / counts;
+  if (plane == kMotion) return static_cast<double>(header.motion_step) / kCoefficientsPerStep * share.sqrt().sqrt();
+  if (plane == kDisplacement)
+    return static_cast<double>(header.displacement_step) / kCoefficientsPerStep * share.sqrt();
+  return static_cast<double>(header.detail_step) / kCoefficientsPerStep / counts.sqrt();
 }
 
-Eigen::VectorXd DisplacementSteps(const Shape& shape, const SequenceHeader& header) {
-  return static_cast<double>(header.displacement_step) / kCoefficientsPerStep * ComponentShare(shape).sqrt();
+PlaneField::PlaneField(const HarmonicBasis& basis, const PlaneLayout& layout, Eigen::VectorXd units)
+    : basis_(basis), units_(std::move(units)), held_(layout.size()) {
+  Eigen::Index vertices = 0;
+  for (const ComponentHarmonics& c : basis.components) vertices += c.vectors.rows();
+  values_.setZero(vertices, static_cast<Eigen::Index>(layout.channels));
 }
-
-PlaneField::PlaneField(const Shape& shape, int channels, Eigen::VectorXd steps)
-    : shape_(shape),
-      steps_(std::move(steps)),
-      held_(shape.order.size() * static_cast<std::size_t>(channels)),
-      values_(Eigen::MatrixXd::Zero(static_cast<Eigen::Index>(shape.vertices()), channels)) {}
 
 void PlaneField::Reset() {
   std::fill(held_.begin(), held_.end(), 0);
   values_.setZero();
 }
 
-const Eigen::MatrixXd& PlaneField::Update(std::span<const std::int32_t> coefficients) {
-  const Eigen::Index channels = values_.cols();
+const Eigen::MatrixXd& PlaneField::Update(const PlaneValues& coefficients) {
   std::size_t i = 0;
   Eigen::Index row = 0;
-  for (const HarmonicIndex& index : shape_.order) {
-    const double step = steps_[row++];
-    const ComponentHarmonics& c = shape_.basis.components[index.component];
-    for (Eigen::Index channel = 0; channel < channels; ++channel, ++i) {
+  for (const HarmonicIndex& index : basis_.order) {
+    const ComponentHarmonics& c = basis_.components[index.component];
+    const double unit = units_[row++];
+    for (Eigen::Index channel = 0; channel < values_.cols(); ++channel, ++i) {
       const std::int32_t change = coefficients[i] - held_[i];
       if (change == 0) continue;
       held_[i] = coefficients[i];
-      values_.col(channel).segment(c.component.first, c.component.count) += (change * step) * c.vectors.col(index.k);
+      values_.col(channel).segment(c.component.first, c.component.count) += (change * unit) * c.vectors.col(index.k);
     }
   }
   return values_;
@@ -59,14 +61,16 @@ const Eigen::MatrixXd& PlaneField::Update(std::span<const std::int32_t> coeffici
 Reconstructor::Reconstructor(const Shape& shape, const SequenceHeader& header)
     : shape_(shape),
       header_(header),
-      motion_(shape, kMotionChannels, MotionSteps(shape, header)),
-      displacement_(shape, kDisplacementChannels, DisplacementSteps(shape, header)),
+      correction_unit_(static_cast<double>(header.correction_step) / kCoefficientsPerStep),
       poisson_(shape),
-      gradients_(shape.vertices()) {}
+      gradients_(shape.vertices()) {
+  for (const Plane p : kHarmonicPlanes) {
+    fields_.emplace_back(BasisOf(shape, p), shape.layouts[p], PlaneUnits(shape, header, p));
+  }
+}
 
 bool Reconstructor::StartGroup() {
-  motion_.Reset();
-  displacement_.Reset();
+  for (PlaneField& field : fields_) field.Reset();
   return UseKeyReference();
 }
 
@@ -81,23 +85,32 @@ bool Reconstructor::UseKeyReference() {
   return poisson_.SetReference(shape_.positions, shape_.weights);
 }
 
-const PositionMatrix& Reconstructor::ReconstructMotion(std::span<const std::int32_t> motion) {
-  const Eigen::MatrixXd& fields = motion_.Update(motion);
+const PositionMatrix& Reconstructor::ReconstructMotion(const PlaneValues& motion) {
+  const Eigen::MatrixXd& fields = fields_[kMotion].Update(motion);
   if (std::all_of(motion.begin(), motion.end(), [](std::int32_t c) { return c == 0; })) {
-    moved_ = reference();  // exactly, so that what stands still does
-    return moved_;
+    aligned_ = reference();  // exactly, so that what stands still does
+    return aligned_;
   }
   for (Eigen::Index v = 0; v < fields.rows(); ++v) {
-    double channels[kMotionChannels];
-    for (int c = 0; c < kMotionChannels; ++c) channels[c] = fields(v, c);
+    double channels[9];
+    for (int c = 0; c < 9; ++c) channels[c] = fields(v, c);
     gradients_[static_cast<std::size_t>(v)] = DeformationGradient(channels);
   }
-  moved_ = poisson_.Solve(gradients_);
-  return moved_;
+  aligned_ = poisson_.Solve(gradients_);
+  return aligned_;
 }
 
-const PositionMatrix& Reconstructor::AddDisplacement(std::span<const std::int32_t> displacement) {
-  aligned_ = moved_ + displacement_.Update(displacement);
+const PositionMatrix& Reconstructor::Add(Plane plane, const PlaneValues& values) {
+  if (values.empty()) return aligned_;
+  if (plane != kCorrection) {
+    aligned_ += fields_[plane].Update(values);
+    return aligned_;
+  }
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    if (values[i] != 0) {
+      aligned_(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) += values[i] * correction_unit_;
+    }
+  }
   return aligned_;
 }
 
@@ -126,8 +139,9 @@ PositionMatrix Reconstructor::RemoveRigid(const PositionMatrix& positions,
 }
 
 PositionMatrix Reconstructor::Reconstruct(const FrameCoefficients& frame) {
-  ReconstructMotion(frame.motion);
-  return ApplyRigid(AddDisplacement(frame.displacement), frame.rigid);
+  ReconstructMotion(frame.planes[kMotion]);
+  for (const Plane p : {kDisplacement, kDetail, kCorrection}) Add(p, frame.planes[p]);
+  return ApplyRigid(aligned_, frame.rigid);
 }
 
 }  // namespace sac

@@ -16,25 +16,24 @@ namespace sac {
 // coefficients changed are touched.
 class PlaneField {
  public:
-  // `steps`: of each harmonic's coefficients.
-  PlaneField(const Shape& shape, int channels, Eigen::VectorXd steps);
+  // `basis` must outlive it. `units`: of each row's coefficients.
+  PlaneField(const HarmonicBasis& basis, const PlaneLayout& layout, Eigen::VectorXd units);
 
   // vertices x channels.
-  const Eigen::MatrixXd& Update(std::span<const std::int32_t> coefficients);
+  const Eigen::MatrixXd& Update(const PlaneValues& coefficients);
   // Forgets what was summed up, so that values do not depend on what was decoded before a group.
   void Reset();
 
  private:
-  const Shape& shape_;
-  Eigen::VectorXd steps_;
+  const HarmonicBasis& basis_;
+  Eigen::VectorXd units_;
   std::vector<std::int32_t> held_;
   Eigen::MatrixXd values_;
 };
 
-// The unit of each coefficient of a plane: a sixteenth of the header's step, larger in small components, whose vertices
-// are few (spec.md 6.5.1).
-Eigen::VectorXd MotionSteps(const Shape& shape, const SequenceHeader& header);
-Eigen::VectorXd DisplacementSteps(const Shape& shape, const SequenceHeader& header);
+// The unit of each row of a plane in harmonics (spec.md 6.5.1): a sixteenth of the header's step. It is larger in small
+// components, whose vertices are few; and patches share the error of a vertex among their harmonics.
+Eigen::VectorXd PlaneUnits(const Shape& shape, const SequenceHeader& header, Plane plane);
 
 // Turns coefficients into positions: the one body that encoder and decoder call.
 class Reconstructor {
@@ -50,9 +49,9 @@ class Reconstructor {
   bool StartFrame(bool intra);
 
   // What the motion plane alone gives, before the rigid motion.
-  const PositionMatrix& ReconstructMotion(std::span<const std::int32_t> motion);
-  // Adds the displacement plane to the result of ReconstructMotion: the frame before its rigid motion.
-  const PositionMatrix& AddDisplacement(std::span<const std::int32_t> displacement);
+  const PositionMatrix& ReconstructMotion(const PlaneValues& motion);
+  // Adds another plane, in their order, to what there is of the frame.
+  const PositionMatrix& Add(Plane plane, const PlaneValues& values);
   // The frame in model units: `aligned` after its rigid motion (spec.md 6.5.4).
   PositionMatrix ApplyRigid(const PositionMatrix& aligned, const std::array<std::int32_t, 6>& rigid) const;
   // The inverse, for encoders: positions as they were before the rigid motion.
@@ -71,13 +70,12 @@ class Reconstructor {
 
   const Shape& shape_;
   SequenceHeader header_;
-  PlaneField motion_;
-  PlaneField displacement_;
+  std::vector<PlaneField> fields_;  // of the planes in harmonics
+  double correction_unit_;
   PoissonSystem poisson_;
   bool reference_is_key_ = false;
   DeformationGradients gradients_;
-  PositionMatrix moved_;    // by the motion plane
-  PositionMatrix aligned_;  // and by the displacement plane
+  PositionMatrix aligned_;  // the frame before its rigid motion
 };
 
 }  // namespace sac

@@ -19,6 +19,7 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
     if (counts[i] > limits.harmonics) return Status::Limit("more harmonics in a component than the limit");
     values += static_cast<std::uint64_t>(counts[i]) * mesh.components[i].count;
   }
+  if (header.detail_step > 0) values += static_cast<std::uint64_t>(header.patch_size) * header.vertices;
   if (values > limits.basis_values) return Status::Limit("the harmonic basis is larger than the limit");
 
   shape.triangles = std::move(mesh.triangles);
@@ -34,7 +35,15 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
   shape.weights = CotangentWeights(shape.positions, shape.triangles, shape.edges);
   shape.masses = VertexMasses(shape.positions, shape.triangles);
   shape.centre = shape.masses.transpose() * shape.positions;
-  shape.order = HarmonicOrder(counts);
+  std::vector<std::uint32_t> patch_sizes;
+  for (const Component& patch : mesh.patches) patch_sizes.push_back(patch.count);
+  shape.layouts = LayOutPlanes(header, counts, patch_sizes);
+  if (header.detail_step > 0) {
+    // Every vertex alike: a plain orthogonal basis of each patch.
+    const Eigen::VectorXd alike = Eigen::VectorXd::Ones(shape.positions.rows());
+    SAC_RETURN_IF_ERROR(ComputeHarmonics(shape.edges, shape.weights, alike, mesh.grid, mesh.patches, patch_sizes, 0,
+                                         shape.patch_basis));
+  }
   return ComputeHarmonics(shape.edges, shape.weights, shape.masses, mesh.grid, shape.components, counts,
                           samples_per_harmonic, shape.basis);
 }

@@ -8,20 +8,21 @@
 #include "codec/harmonics.h"
 #include "codec/laplacian.h"
 #include "codec/mesh.h"
-#include "format/harmonic_order.h"
+#include "codec/patches.h"
 #include "format/limits.h"
+#include "format/plane_layout.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
 
 namespace sac {
 
-using GridPosition = std::array<std::uint32_t, 3>;
-
-// The decoded first frame, M'0: integer positions, and triangles whose components are contiguous runs of vertices.
+// The decoded first frame, M'0: integer positions, and triangles whose components are runs of vertices, and within them
+// patches.
 struct DecodedMesh {
   std::vector<GridPosition> grid;
   std::vector<Triangle> triangles;
   std::vector<Component> components;
+  std::vector<Component> patches;
 };
 
 // Everything that both directions derive from the I-frame (spec.md 6).
@@ -34,7 +35,8 @@ struct Shape {
   std::vector<double> weights;  // cotangent weight per edge, of M'0
   Eigen::VectorXd masses;       // area share per vertex, of M'0
   HarmonicBasis basis;
-  std::vector<HarmonicIndex> order;  // of a plane's coefficients
+  HarmonicBasis patch_basis;  // empty without a detail plane
+  PlaneLayouts layouts;
 
   std::size_t vertices() const { return static_cast<std::size_t>(positions.rows()); }
 };

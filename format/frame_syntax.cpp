@@ -22,10 +22,12 @@ std::size_t ActivityClass(std::int64_t s) {
 }  // namespace
 
 template <class Coder>
-FrameCoder<Coder>::FrameCoder(std::span<const std::uint32_t> harmonics_per_component)
-    : order_(HarmonicOrder(harmonics_per_component)), zeros_(order_.size() * kMotionChannels) {
-  motion_models_.fill(PlaneModels(kActivities * kBands));
-  displacement_models_.fill(PlaneModels(kActivities * kBands));
+FrameCoder<Coder>::FrameCoder(const PlaneLayouts& layouts) : layouts_(layouts), zeros_(EmptyPlanes(layouts)) {
+  for (LevelModels& level : models_) {
+    for (std::size_t p = 0; p < kPlanes; ++p) {
+      if (layouts[p].size() > 0) level.planes[p].coefficients.resize(kActivities * kBands);
+    }
+  }
 }
 
 // spec.md 6.2: a flag tells whether the references are those of the structure; if not they follow, each as its distance
@@ -91,31 +93,62 @@ bool FrameCoder<Coder>::CodeCoefficient(Coder& coder, CoefficientModels& models,
 }
 
 template <class Coder>
-bool FrameCoder<Coder>::CodePlane(Coder& coder, PlaneModels& models, int channels,
-                                  const std::array<std::span<const std::int32_t>, 2>& references,
-                                  std::span<std::int32_t> plane) {
-  const auto width = static_cast<std::size_t>(channels);
-  const auto size = static_cast<std::ptrdiff_t>(plane.size());
+std::span<const std::int32_t> FrameCoder<Coder>::ReferenceResiduals(const FrameSyntax& frame, std::size_t plane,
+                                                                    std::size_t i) const {
+  const auto& references = frame.slot.references;
+  return references.empty() ? zeros_[plane] : coded_[references[std::min(i, references.size() - 1)]].planes[plane];
+}
+
+template <class Coder>
+bool FrameCoder<Coder>::CodePlane(Coder& coder, PlaneModels& models, std::size_t plane, FrameSyntax& frame) {
+  PlaneValues& values = frame.planes[plane];
+  bool empty = false;
+  if constexpr (!Coder::kDecodes) {
+    empty = std::all_of(values.begin(), values.end(), [](std::int32_t v) { return v == 0; });
+  }
+  coder.Bit(models.empty, empty);
+  if (empty) {
+    std::fill(values.begin(), values.end(), 0);
+    return true;
+  }
+  const std::array references = {ReferenceResiduals(frame, plane, 0), ReferenceResiduals(frame, plane, 1)};
+  const std::size_t channels = layouts_[plane].channels;
+  const auto width = static_cast<std::ptrdiff_t>(channels);
+  const auto size = static_cast<std::ptrdiff_t>(values.size());
   // Magnitude of one residual, bounded so that sums stay small; zero outside the plane.
   const auto at = [size](std::span<const std::int32_t> p, std::ptrdiff_t i) -> std::int64_t {
     return i < 0 || i >= size ? 0 : std::min(std::abs(p[static_cast<std::size_t>(i)]), 1 << 15);
   };
-  for (std::size_t k = 0; k < order_.size(); ++k) {
-    std::int64_t before = 0;  // sum over the channels before, same harmonic
-    for (std::size_t c = 0; c < width; ++c) {
-      const auto i = static_cast<std::ptrdiff_t>(k * width + c);
-      const std::ptrdiff_t w = channels;
-      std::int64_t s =
-          12 * at(plane, i - w) + 6 * at(plane, i - 2 * w) + 3 * at(plane, i - 3 * w) + 3 * at(plane, i - 4 * w);
+  std::ptrdiff_t i = 0;
+  for (const std::uint8_t band : layouts_[plane].bands) {
+    std::int64_t before = 0;  // sum over the channels before, same row
+    for (std::size_t c = 0; c < channels; ++c, ++i) {
+      std::int64_t s = 12 * at(values, i - width) + 6 * at(values, i - 2 * width) + 3 * at(values, i - 3 * width) +
+                       3 * at(values, i - 4 * width);
       for (const auto& reference : references) {
-        s += 4 * at(reference, i) + 2 * at(reference, i - w) + 2 * at(reference, i + w);
+        s += 4 * at(reference, i) + 2 * at(reference, i - width) + 2 * at(reference, i + width);
       }
       if (c > 0) s += 24 * before / static_cast<std::int64_t>(c);
-      std::int32_t& value = plane[static_cast<std::size_t>(i)];
-      if (!CodeCoefficient(coder, models[ActivityClass(s) * kBands + order_[k].band], value)) return false;
-      before += at(plane, i);
+      CoefficientModels& context = models.coefficients[ActivityClass(s) * kBands + band];
+      if (!CodeCoefficient(coder, context, values[static_cast<std::size_t>(i)])) return false;
+      before += at(values, i);
     }
     if (!coder.ok()) return false;
+  }
+  return true;
+}
+
+template <class Coder>
+bool FrameCoder<Coder>::CodeRigid(Coder& coder, LevelModels& models, std::array<std::int32_t, 6>& rigid) {
+  bool moves = !Coder::kDecodes && std::any_of(rigid.begin(), rigid.end(), [](std::int32_t v) { return v != 0; });
+  coder.Bit(models.moves, moves);
+  if (!moves) {
+    rigid = {};
+    return true;
+  }
+  for (std::size_t i = 0; i < 6; ++i) {
+    CodeSigned(coder, models.rigid[i / 3], rigid[i]);
+    if (std::abs(static_cast<std::int64_t>(rigid[i])) > kMaxCoefficient) return false;
   }
   return true;
 }
@@ -124,52 +157,24 @@ template <class Coder>
 bool FrameCoder<Coder>::Code(Coder& coder, const FrameSlot& slot, FrameSyntax& frame, FrameBits* bits) {
   double mark = 0;
   if constexpr (!Coder::kDecodes) mark = coder.bits();
-  const auto account = [&](double FrameBits::*part) {
+  const auto account = [&](double& part) {
     if constexpr (!Coder::kDecodes) {
-      if (bits) bits->*part += coder.bits() - mark;
+      part += coder.bits() - mark;
       mark = coder.bits();
     }
   };
-  if (!CodeReferences(coder, slot, frame)) return false;
-  frame.motion.resize(order_.size() * kMotionChannels);
-  frame.displacement.resize(order_.size() * kDisplacementChannels);
-  const std::size_t level = std::min<std::size_t>(slot.level, kLevels - 1);
-  const auto zero = [](std::int32_t v) { return v == 0; };
-  bool repeats = false;
-  if constexpr (!Coder::kDecodes) {
-    repeats = std::all_of(frame.rigid.begin(), frame.rigid.end(), zero) &&
-              std::all_of(frame.motion.begin(), frame.motion.end(), zero) &&
-              std::all_of(frame.displacement.begin(), frame.displacement.end(), zero);
-  }
-  coder.Bit(repeat_models_[level], repeats);
-  bool good = true;
-  if (repeats) {
-    frame.rigid = {};
-    std::fill(frame.motion.begin(), frame.motion.end(), 0);
-    std::fill(frame.displacement.begin(), frame.displacement.end(), 0);
-    account(&FrameBits::side);
-  } else {
-    for (std::size_t i = 0; i < 6; ++i) {
-      CodeSigned(coder, rigid_models_[2 * level + i / 3], frame.rigid[i]);
-      good = good && std::abs(static_cast<std::int64_t>(frame.rigid[i])) <= kMaxCoefficient;
-    }
-    account(&FrameBits::side);
-    // The first of two references, or the only one twice; nothing counts before an intra frame.
-    const auto residuals = [&](std::vector<std::int32_t> FrameSyntax::*plane, std::size_t i) {
-      const auto& references = frame.slot.references;
-      if (references.empty()) return std::span<const std::int32_t>(zeros_).first((frame.*plane).size());
-      return std::span<const std::int32_t>(coded_[references[std::min(i, references.size() - 1)]].*plane);
-    };
-    const auto code = [&](std::vector<std::int32_t> FrameSyntax::*plane, PlaneModels& models, int channels) {
-      return CodePlane(coder, models, channels, {residuals(plane, 0), residuals(plane, 1)}, frame.*plane);
-    };
-    good = good && code(&FrameSyntax::motion, motion_models_[level], kMotionChannels);
-    account(&FrameBits::motion);
-    good = good && code(&FrameSyntax::displacement, displacement_models_[level], kDisplacementChannels);
-    account(&FrameBits::displacement);
+  FrameBits unused;
+  FrameBits& parts = bits ? *bits : unused;
+  LevelModels& models = models_[std::min<std::size_t>(slot.level, kLevels - 1)];
+  if (!CodeReferences(coder, slot, frame) || !CodeRigid(coder, models, frame.rigid)) return false;
+  account(parts.side);
+  for (std::size_t p = 0; p < kPlanes; ++p) {
+    frame.planes[p].resize(layouts_[p].size());
+    if (layouts_[p].size() > 0 && !CodePlane(coder, models.planes[p], p, frame)) return false;
+    account(parts.planes[p]);
   }
   coded_.push_back(frame);
-  return good && coder.ok();
+  return coder.ok();
 }
 
 template class FrameCoder<RangeEncoder>;

@@ -6,22 +6,17 @@
 #include <vector>
 
 #include "format/group_structure.h"
-#include "format/harmonic_order.h"
 #include "format/integer_coder.h"
+#include "format/plane_layout.h"
 #include "format/range_coder.h"
 
 namespace sac {
 
-inline constexpr int kMotionChannels = 9;        // log-rotation (3), stretch (6)
-inline constexpr int kDisplacementChannels = 3;  // x, y, z
-
 // What the bitstream carries of one frame, and nothing else (spec.md 6.2): integers, in units of the header's steps.
-// Planes are stored harmonic by harmonic, in HarmonicOrder, all channels of one together.
 struct FrameSyntax {
   FrameSlot slot;                          // references may differ from the structure's
   std::array<std::int32_t, 6> rigid = {};  // residual of rotation (3), translation (3)
-  std::vector<std::int32_t> motion;        // residual, harmonics x kMotionChannels
-  std::vector<std::int32_t> displacement;  // residual, harmonics x kDisplacementChannels
+  FramePlanes planes;                      // residuals
 
   bool intra() const { return slot.references.empty(); }
 };
@@ -34,8 +29,7 @@ inline constexpr std::int32_t kMaxCoefficient = 1 << 28;
 // Bits of a group by what they say.
 struct FrameBits {
   double side = 0;
-  double motion = 0;
-  double displacement = 0;
+  std::array<double, kPlanes> planes = {};
 };
 
 // Codes the frames of one group in coding order; holds the adaptive models and the residuals that contexts look at.
@@ -43,7 +37,7 @@ struct FrameBits {
 template <class Coder>
 class FrameCoder {
  public:
-  explicit FrameCoder(std::span<const std::uint32_t> harmonics_per_component);
+  explicit FrameCoder(const PlaneLayouts& layouts);
 
   // Writes or reads `frame`, the one at `slot` of the group's structure. False when a value is out of range or the code
   // ran past its end. `bits` accounts for what an encoder writes.
@@ -55,26 +49,31 @@ class FrameCoder {
     std::array<BitModel, 14> unary;
     std::array<BitModel, 20> escape;
   };
-  using PlaneModels = std::vector<CoefficientModels>;
-
+  struct PlaneModels {
+    BitModel empty;
+    std::vector<CoefficientModels> coefficients;  // by context
+  };
   static constexpr std::size_t kLevels = 3;  // of a pyramid that have models of their own
+  struct LevelModels {
+    BitModel moves;
+    std::array<SignedModels, 2> rigid;
+    std::array<PlaneModels, kPlanes> planes;
+  };
 
   bool CodeReferences(Coder& coder, const FrameSlot& slot, FrameSyntax& frame);
+  bool CodeRigid(Coder& coder, LevelModels& models, std::array<std::int32_t, 6>& rigid);
   bool CodeCoefficient(Coder& coder, CoefficientModels& models, std::int32_t& value);
-  // `references`: the same plane's residuals of the frames predicted from.
-  bool CodePlane(Coder& coder, PlaneModels& models, int channels,
-                 const std::array<std::span<const std::int32_t>, 2>& references, std::span<std::int32_t> plane);
+  // Residuals of a plane of the frame's first (0) or second (1) reference, or the only one twice.
+  std::span<const std::int32_t> ReferenceResiduals(const FrameSyntax& frame, std::size_t plane, std::size_t i) const;
+  bool CodePlane(Coder& coder, PlaneModels& models, std::size_t plane, FrameSyntax& frame);
 
-  std::vector<HarmonicIndex> order_;
+  PlaneLayouts layouts_;
   std::vector<FrameSyntax> coded_;
-  std::vector<std::int32_t> zeros_;
+  FramePlanes zeros_;
   BitModel explicit_model_;
   std::array<BitModel, 2> reference_count_models_;
   UnsignedModels reference_models_;
-  std::array<BitModel, kLevels> repeat_models_;
-  std::array<SignedModels, 2 * kLevels> rigid_models_;
-  std::array<PlaneModels, kLevels> motion_models_;
-  std::array<PlaneModels, kLevels> displacement_models_;
+  std::array<LevelModels, kLevels> models_;
 };
 
 extern template class FrameCoder<RangeEncoder>;

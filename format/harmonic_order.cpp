@@ -9,16 +9,18 @@ namespace sac {
 std::vector<HarmonicIndex> HarmonicOrder(std::span<const std::uint32_t> counts) {
   std::vector<HarmonicIndex> order;
   for (std::uint32_t c = 0; c < counts.size(); ++c) {
-    for (std::uint32_t k = 0; k < counts[c]; ++k) {
-      const int octave = std::bit_width(k + 1) - 1;
-      order.push_back({c, k, static_cast<std::uint8_t>(std::min(octave / 2, 6))});
-    }
+    for (std::uint32_t k = 0; k < counts[c]; ++k) order.push_back({c, k});
   }
   std::stable_sort(order.begin(), order.end(), [&](const HarmonicIndex& a, const HarmonicIndex& b) {
     return static_cast<std::uint64_t>(a.k) * counts[b.component] <
            static_cast<std::uint64_t>(b.k) * counts[a.component];
   });
   return order;
+}
+
+std::uint8_t HarmonicBand(std::uint32_t k, int octaves_per_band) {
+  const int octave = std::bit_width(k + 1) - 1;
+  return static_cast<std::uint8_t>(std::min(octave / octaves_per_band, 6));
 }
 
 }  // namespace sac

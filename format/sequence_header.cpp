@@ -48,6 +48,7 @@ Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& 
   if (header.vertices == 0) return Status::Corrupt("sequence header: no vertices");
   if (header.harmonics == 0) return Status::Corrupt("sequence header: no harmonics");
   if (header.harmonics > header.vertices) return Status::Corrupt("sequence header: more harmonics than vertices");
+  if (header.patch_size < 1 || header.patch_size > 1024) return Status::Corrupt("sequence header: patch size");
   if (header.frame_rate_denominator == 0) return Status::Corrupt("sequence header: frame rate");
   for (const float v : {header.origin_x, header.origin_y, header.origin_z}) {
     if (!std::isfinite(v)) return Status::Corrupt("sequence header: origin is not finite");
@@ -55,6 +56,9 @@ Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& 
   for (const float v :
        {header.cell, header.motion_step, header.displacement_step, header.rotation_step, header.translation_step}) {
     if (!std::isfinite(v) || v <= 0) return Status::Corrupt("sequence header: a step is not positive");
+  }
+  for (const float v : {header.detail_step, header.correction_step}) {
+    if (!std::isfinite(v) || v < 0) return Status::Corrupt("sequence header: a step is negative");
   }
   if (header.vertices > limits.vertices) return Exceeds("vertices", header.vertices, limits.vertices);
   if (header.triangles > limits.triangles) return Exceeds("triangles", header.triangles, limits.triangles);

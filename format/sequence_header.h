@@ -18,7 +18,8 @@ enum class ReferenceShape : std::uint8_t {
   kPrevious = 1,  // the reconstruction of the frame before, as published (Wang et al. 2015)
 };
 
-// The sequence header, in the order of the bitstream (spec.md 4). Steps are finite and positive.
+// The sequence header, in the order of the bitstream (spec.md 4). Steps are finite and positive, those of planes that
+// may be left out zero or more.
 struct SequenceHeader {
   std::uint8_t version_major = kVersionMajor;
   std::uint8_t version_minor = kVersionMinor;
@@ -28,6 +29,7 @@ struct SequenceHeader {
   std::uint32_t vertices = 0;
   std::uint32_t triangles = 0;
   std::uint32_t harmonics = 0;             // over all components
+  std::uint32_t patch_size = 200;          // vertices of a patch at most, 1..1024
   std::uint32_t frame_rate_numerator = 0;  // 0: unknown
   std::uint32_t frame_rate_denominator = 1;
   float origin_x = 0;  // of the position grid, model units
@@ -36,6 +38,8 @@ struct SequenceHeader {
   float cell = 1;               // of the position grid, model units
   float motion_step = 0;        // radians (rotation), strain (stretch)
   float displacement_step = 0;  // model units
+  float detail_step = 0;        // model units; 0: no detail plane
+  float correction_step = 0;    // model units; 0: no correction plane
   float rotation_step = 0;      // of the rigid motion, radians
   float translation_step = 0;   // of the rigid motion, model units
 
@@ -55,6 +59,7 @@ void VisitFields(Header& h, Visitor&& visit) {
   visit("vertices", h.vertices);
   visit("triangles", h.triangles);
   visit("harmonics", h.harmonics);
+  visit("patch_size", h.patch_size);
   visit("frame_rate_numerator", h.frame_rate_numerator);
   visit("frame_rate_denominator", h.frame_rate_denominator);
   visit("origin_x", h.origin_x);
@@ -63,6 +68,8 @@ void VisitFields(Header& h, Visitor&& visit) {
   visit("cell", h.cell);
   visit("motion_step", h.motion_step);
   visit("displacement_step", h.displacement_step);
+  visit("detail_step", h.detail_step);
+  visit("correction_step", h.correction_step);
   visit("rotation_step", h.rotation_step);
   visit("translation_step", h.translation_step);
 }

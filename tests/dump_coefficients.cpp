@@ -3,11 +3,13 @@
 #include <cstdio>
 #include <fstream>
 #include <iterator>
-#include <numeric>
 #include <optional>
 #include <span>
+#include <utility>
 #include <vector>
 
+#include "codec/decode/draco_mesh.h"
+#include "codec/decode/i_frame.h"
 #include "codec/prediction.h"
 #include "format/bytes.h"
 #include "format/crc32.h"
@@ -49,7 +51,13 @@ class Dump {
   Status TakeIFrame(std::span<const std::uint8_t> payload) {
     IFrameSyntax syntax;
     SAC_RETURN_IF_ERROR(ParseIFrame(payload, header_, syntax));
-    counts_ = syntax.harmonics;
+    DracoMesh draco;
+    SAC_RETURN_IF_ERROR(DecodeDraco(syntax.mesh, header_, draco));
+    DecodedIFrame decoded;
+    SAC_RETURN_IF_ERROR(AssembleIFrame(syntax, header_, std::move(draco), decoded));
+    std::vector<std::uint32_t> patch_sizes;
+    for (const Component& patch : decoded.mesh.patches) patch_sizes.push_back(patch.count);
+    layouts_ = LayOutPlanes(header_, syntax.harmonics, patch_sizes);
     return Status::Ok();
   }
 
@@ -59,13 +67,14 @@ class Dump {
     const std::uint32_t pyramid = reader.Varint();
     if (!reader.ok()) return Status::Corrupt("malformed group");
     RangeDecoder range(payload.subspan(reader.position()));
-    FrameCoder<RangeDecoder> coder(counts_);
-    Predictor predictor(header_, std::accumulate(counts_.begin(), counts_.end(), std::size_t{0}));
+    FrameCoder<RangeDecoder> coder(layouts_);
+    Predictor predictor(header_, layouts_);
     for (const FrameSlot& slot : GroupStructure(frames, pyramid)) {
       FrameSyntax syntax;
       if (!coder.Code(range, slot, syntax) || !predictor.Add(syntax)) return Status::Corrupt("malformed frame");
       const FrameCoefficients& sums = predictor.frames().back();
-      const std::uint32_t crc = AddToCrc(sums.displacement, AddToCrc(sums.motion, AddToCrc(sums.rigid, 0)));
+      std::uint32_t crc = AddToCrc(sums.rigid, 0);
+      for (const PlaneValues& plane : sums.planes) crc = AddToCrc(plane, crc);
       std::printf("frame %u references %zu crc %08x\n", first_ + slot.display, syntax.slot.references.size(), crc);
     }
     first_ += frames;
@@ -74,7 +83,7 @@ class Dump {
 
   Limits limits_;
   SequenceHeader header_;
-  std::vector<std::uint32_t> counts_;
+  PlaneLayouts layouts_;
   std::uint32_t first_ = 0;  // frame of the next group
 };
 

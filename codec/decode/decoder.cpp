@@ -58,7 +58,6 @@ class Decoder::Impl {
   bool ended_ = false;
   std::uint32_t frame_count_ = 0;
 
-  std::vector<std::uint32_t> counts_;
   Shape shape_;  // the members below refer to it
   std::unique_ptr<Reconstructor> reconstructor_;
 
@@ -118,9 +117,8 @@ Status Decoder::Impl::TakeIFrame(std::span<const std::uint8_t> payload) {
   out.uv_triangles = std::move(decoded.uv_triangles);
   out.normals = std::move(decoded.normals);
   out.colors = std::move(decoded.colors);
-  counts_ = std::move(syntax.harmonics);
   SAC_RETURN_IF_ERROR(
-      BuildShape(*header, std::move(decoded.mesh), counts_, syntax.samples_per_harmonic, limits_, shape_));
+      BuildShape(*header, std::move(decoded.mesh), syntax.harmonics, syntax.samples_per_harmonic, limits_, shape_));
   if (!SameFingerprint(shape_.basis.Fingerprint(), syntax.fingerprint)) {
     return Status::Unsupported("the harmonics computed here are not the encoder's");
   }
@@ -146,8 +144,8 @@ Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload) {
   if (previous && pyramid != 1) return Status::Corrupt("group: B-frames against the previous frame");
 
   RangeDecoder range(payload.subspan(reader.position()));
-  FrameCoder<RangeDecoder> coder(counts_);
-  Predictor predictor(*header, shape_.order.size());
+  FrameCoder<RangeDecoder> coder(shape_.layouts);
+  Predictor predictor(*header, shape_.layouts);
   const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
   group_.assign(frames, FrameCoefficients());
   group_intra_.assign(frames, false);
@@ -163,7 +161,8 @@ Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload) {
     group_intra_[slot.display] = frame.intra();
   }
   if (!range.AtEnd()) return Status::Corrupt("group: bytes after the last frame");
-  for (std::size_t i = 0; i < structure.size(); ++i) group_[structure[i].display] = predictor.frames()[i];
+  std::vector<FrameCoefficients> coded = predictor.TakeFrames();
+  for (std::size_t i = 0; i < structure.size(); ++i) group_[structure[i].display] = std::move(coded[i]);
   if (!reconstructor_->StartGroup()) return Status::Corrupt("the first frame's shape is singular");
   next_in_group_ = 0;
   return Status::Ok();

@@ -68,17 +68,24 @@ Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, 
     }
   }
 
-  // 3. Renumber by component, so that each is a run of vertices.
+  // 3. Renumber by component and patch, so that each is a run of vertices.
   std::uint32_t components = 0;
   const std::vector<std::uint32_t> label = LabelComponents(vertices, triangles, components);
-  out.mesh.components.assign(components, Component{0, 0});
-  for (const std::uint32_t c : label) ++out.mesh.components[c].count;
-  for (std::uint32_t c = 1; c < components; ++c) {
-    out.mesh.components[c].first = out.mesh.components[c - 1].first + out.mesh.components[c - 1].count;
+  std::vector<std::vector<std::uint32_t>> members(components);
+  for (std::uint32_t v = 0; v < vertices; ++v) members[label[v]].push_back(v);
+  const std::vector<GridPosition> grid = Scatter(draco.entries, vertex, vertices);
+  const VertexGraph graph = BuildGraph(vertices, triangles);
+  std::vector<std::uint32_t> renumbered(vertices);
+  std::uint32_t next = 0, next_patch = 0;
+  for (std::vector<std::uint32_t>& component : members) {
+    out.mesh.components.push_back({next, static_cast<std::uint32_t>(component.size())});
+    const PatchOrder patches = CutIntoPatches(grid, graph, std::move(component), header.patch_size);
+    for (const std::uint32_t v : patches.vertices) renumbered[v] = next++;
+    for (const std::uint32_t size : patches.sizes) {
+      out.mesh.patches.push_back({next_patch, size});
+      next_patch += size;
+    }
   }
-  std::vector<std::uint32_t> next(components), renumbered(vertices);
-  for (std::uint32_t c = 0; c < components; ++c) next[c] = out.mesh.components[c].first;
-  for (std::uint32_t v = 0; v < vertices; ++v) renumbered[v] = next[label[v]]++;
   for (Triangle& t : triangles) {
     for (std::uint32_t& v : t) v = renumbered[v];
   }

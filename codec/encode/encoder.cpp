@@ -18,6 +18,9 @@
 namespace sac {
 namespace {
 
+// A patch's harmonics compress the better the larger it is, and start the slower.
+constexpr std::uint32_t kLargePatch = 200, kSmallPatch = 64, kLargePatchVertices = 50'000;
+
 Status CheckSettings(const EncoderSettings& s) {
   const auto positive = [](const std::optional<double>& v) { return !v || (std::isfinite(*v) && *v > 0); };
   if (!(s.quality >= 0 && s.quality <= 100)) return Status::InvalidArgument("quality must be from 0 to 100");
@@ -31,6 +34,10 @@ Status CheckSettings(const EncoderSettings& s) {
   }
   if (!positive(s.motion_step)) return Status::InvalidArgument("the motion step must be positive");
   if (!positive(s.displacement_step)) return Status::InvalidArgument("the displacement step must be positive");
+  if (s.detail_step && !(std::isfinite(*s.detail_step) && *s.detail_step >= 0)) {
+    return Status::InvalidArgument("the detail step must not be negative");
+  }
+  if (!positive(s.max_error)) return Status::InvalidArgument("the largest error must be positive");
   if (s.position_bits && (*s.position_bits < 1 || *s.position_bits > 24)) {
     return Status::InvalidArgument("position bits must be from 1 to 24");
   }
@@ -101,6 +108,16 @@ Status ChooseGrid(const Positions& positions, SequenceHeader& header, std::vecto
   return Status::Ok();
 }
 
+// How far a bound on the error must stay below what is asked: decoded positions are rounded to floats, and computed
+// alike to 1e-9 of the shape only. Twice, because later frames may be farther from the origin than the first.
+double RoundingMargin(const Positions& positions) {
+  double largest = 0;
+  for (const Vec3f& p : positions) {
+    for (const float x : p) largest = std::max(largest, std::abs(static_cast<double>(x)));
+  }
+  return 2 * std::sqrt(3.0) * largest * 0x1p-24;
+}
+
 double RmsRadius(const Positions& positions) {
   std::array<double, 3> sum{};
   double squares = 0;
@@ -154,7 +171,6 @@ class Encoder::Impl {
 
   EncoderSettings settings_;
   Shape shape_;
-  std::vector<std::uint32_t> counts_;
   std::unique_ptr<GroupEncoder> encoder_;
   std::vector<PositionMatrix> group_;  // frames that wait for the group to be full
   std::uint32_t frame_count_ = 0;
@@ -178,6 +194,15 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   header.frame_rate_denominator = settings.frame_rate_denominator;
   header.motion_step = static_cast<float>(settings.motion_step.value_or(quality.motion_step));
   header.displacement_step = static_cast<float>(displacement_step * rms);
+  const double detail_step = settings.detail_step.value_or(0);
+  header.detail_step = static_cast<float>(detail_step * rms);
+  header.patch_size = header.vertices <= kLargePatchVertices ? kLargePatch : kSmallPatch;
+  double bound = 0;
+  if (settings.max_error) {
+    bound = *settings.max_error - RoundingMargin(first.positions);
+    if (bound <= 0) return Status::InvalidArgument("the largest error allowed is below the coordinates' precision");
+    header.correction_step = static_cast<float>(0.999 * bound * 2 / std::sqrt(3.0));
+  }
   header.rotation_step = static_cast<float>(displacement_step);
   header.translation_step = header.displacement_step;
 
@@ -186,15 +211,15 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   IFrameSyntax syntax;
   DecodedIFrame decoded;
   SAC_RETURN_IF_ERROR(EncodeIFrameMesh(first, grid, header, syntax, decoded, order));
-  counts_ = ShareHarmonics(decoded.mesh, settings.harmonics);
-  for (const std::uint32_t c : counts_) header.harmonics += c;
-  syntax.harmonics = counts_;
+  const std::vector<std::uint32_t> counts = ShareHarmonics(decoded.mesh, settings.harmonics);
+  for (const std::uint32_t c : counts) header.harmonics += c;
+  syntax.harmonics = counts;
   syntax.samples_per_harmonic = settings.samples_per_harmonic;
   if (settings.keep_order) syntax.order = order;
   SAC_RETURN_IF_ERROR(
-      BuildShape(header, std::move(decoded.mesh), counts_, settings.samples_per_harmonic, Limits{}, shape_));
+      BuildShape(header, std::move(decoded.mesh), counts, settings.samples_per_harmonic, Limits{}, shape_));
   syntax.fingerprint = shape_.basis.Fingerprint();
-  encoder_ = std::make_unique<GroupEncoder>(shape_, header);
+  encoder_ = std::make_unique<GroupEncoder>(shape_, header, bound);
 
   bytes.assign(std::begin(kMagic), std::end(kMagic));
   stream_bytes.header += 4;
@@ -232,7 +257,7 @@ Status Encoder::Impl::FlushGroup() {
   const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
   std::vector<FrameSyntax> coded;
   RangeEncoder range;
-  FrameCoder<RangeEncoder> coder(counts_);
+  FrameCoder<RangeEncoder> coder(shape_.layouts);
   FrameBits bits;
   bool good = encoder_->Encode(group_, structure, coded);
   for (std::size_t i = 0; good && i < coded.size(); ++i) good = coder.Code(range, structure[i], coded[i], &bits);
@@ -245,10 +270,11 @@ Status Encoder::Impl::FlushGroup() {
   const double before = stream_bytes.side;
   Append(PacketType::kGroup, payload.bytes(), &StreamBytes::side);
   // Whole bytes for the planes, the rest is side information.
-  const double motion = std::round(bits.motion / 8), displacement = std::round(bits.displacement / 8);
-  stream_bytes.side = std::max(before, stream_bytes.side - motion - displacement);
-  stream_bytes.motion += motion;
-  stream_bytes.displacement += displacement;
+  for (std::size_t p = 0; p < kPlanes; ++p) {
+    const double plane = std::min(std::round(bits.planes[p] / 8), stream_bytes.side - before);
+    stream_bytes.side -= plane;
+    stream_bytes.planes[p] += plane;
+  }
   group_.clear();
   return Status::Ok();
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -7,6 +8,7 @@
 #include <vector>
 
 #include "codec/mesh.h"
+#include "format/plane_layout.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
 
@@ -23,8 +25,10 @@ struct EncoderSettings {
   ReferenceShape reference_shape = ReferenceShape::kKey;  // `previous` has P-frames only
   std::optional<double> motion_step;                      // radians and strain
   std::optional<double> displacement_step;                // fraction of the first frame's RMS radius
-  std::optional<int> position_bits;                       // of the I-frame's grid, 1..24
-  std::uint32_t frame_rate_numerator = 0;                 // frames per second; 0: unknown
+  std::optional<double> detail_step;       // fraction of the first frame's RMS radius; 0: no detail plane
+  std::optional<double> max_error;         // of any vertex in any frame, model units
+  std::optional<int> position_bits;        // of the I-frame's grid, 1..24
+  std::uint32_t frame_rate_numerator = 0;  // frames per second; 0: unknown
   std::uint32_t frame_rate_denominator = 1;
   bool keep_order = false;  // put the input's vertex order in the stream
 };
@@ -33,8 +37,7 @@ struct EncoderSettings {
 struct StreamBytes {
   double header = 0;  // magic, sequence header, end
   double i_frame = 0;
-  double motion = 0;
-  double displacement = 0;
+  std::array<double, kPlanes> planes = {};
   double side = 0;  // rigid motion, frame types, packet framing of groups
 };
 

@@ -15,7 +15,7 @@ namespace {
 constexpr double kLoosestRigid = 30;  // steps
 
 // About how many bits the residuals of a plane cost.
-double EstimatedBits(const std::vector<std::int32_t>& residual) {
+double EstimatedBits(const PlaneValues& residual) {
   double bits = 0;
   for (const std::int32_t v : residual) bits += 2 * std::bit_width(static_cast<std::uint32_t>(std::abs(v)));
   return bits;
@@ -31,7 +31,7 @@ Eigen::VectorXd ReferenceAreas(TriangleFields& fields, const PositionMatrix& pos
 }
 
 // The residual that makes `wanted` from zero at level 0, when there is one.
-bool ExactResidual(const std::vector<std::int32_t>& wanted, std::vector<std::int32_t>& residual) {
+bool ExactResidual(const PlaneValues& wanted, PlaneValues& residual) {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (wanted[i] % kCoefficientsPerStep != 0) return false;
     residual[i] = wanted[i] / kCoefficientsPerStep;
@@ -39,17 +39,28 @@ bool ExactResidual(const std::vector<std::int32_t>& wanted, std::vector<std::int
   return true;
 }
 
+// Corrects each vertex that is farther off than `max_error`, to within half a step along each axis.
+void CorrectOverBound(const PositionMatrix& left, double step, double max_error, PlaneValues& correction) {
+  for (Eigen::Index v = 0; v < left.rows(); ++v) {
+    if (left.row(v).norm() <= max_error) continue;
+    for (Eigen::Index a = 0; a < 3; ++a) {
+      correction[static_cast<std::size_t>(3 * v + a)] =
+          static_cast<std::int32_t>(std::clamp(std::round(left(v, a) / step), -1.0 * kMaxResidual, 1.0 * kMaxResidual));
+    }
+  }
+}
+
 }  // namespace
 
-GroupEncoder::GroupEncoder(const Shape& shape, const SequenceHeader& header)
+GroupEncoder::GroupEncoder(const Shape& shape, const SequenceHeader& header, double max_error)
     : shape_(shape),
       header_(header),
       fields_(shape.triangles),
       projection_(shape, ReferenceAreas(fields_, shape.positions)),
-      motion_units_(MotionSteps(shape, header)),
-      displacement_units_(DisplacementSteps(shape, header)),
-      reconstructor_(shape, header),
-      last_(shape.order.size()) {}
+      units_{PlaneUnits(shape, header, kMotion), PlaneUnits(shape, header, kDisplacement),
+             PlaneUnits(shape, header, kDetail)},
+      max_error_(max_error),
+      reconstructor_(shape, header) {}
 
 GroupEncoder::RigidTarget GroupEncoder::FitTarget(const PositionMatrix& positions) {
   const RigidFit fit = FitRigid(shape_.positions, positions, shape_.centre);
@@ -95,13 +106,15 @@ bool GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::
   }
 
   // 2. In coding order: predict, quantize, and ask the decoder's reconstruction what is left for the next plane.
-  Predictor predictor(header_, shape_.order.size());
+  Predictor predictor(header_, shape_.layouts);
   for (const FrameSlot& slot : structure) {
     const PositionMatrix& positions = frames[slot.display];
     FrameSyntax& frame = coded.emplace_back();
     frame.slot = slot;
-    if (!RepeatFrame(frames, structure, predictor, frame)) {
-      if (!reconstructor_.StartFrame(slot.references.empty())) return false;
+    frame.planes = EmptyPlanes(shape_.layouts);
+    if (!reconstructor_.StartFrame(slot.references.empty())) return false;
+    const bool repeats = RepeatFrame(frames, structure, predictor, frame);
+    if (!repeats) {
       const PositionMatrix aligned = reconstructor_.RemoveRigid(positions, rigid[slot.display]);
       if (!UsesKeyReference()) motion_targets[slot.display] = MeasureMotion(aligned);
       ChoosePlanes(aligned, motion_targets[slot.display], predictor, frame);
@@ -109,10 +122,8 @@ bool GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::
       for (std::size_t i = 0; i < 6; ++i) frame.rigid[i] = rigid[slot.display][i] - prediction.rigid[i];
     }
     if (!predictor.Add(frame)) return false;
-    if (!UsesKeyReference()) {  // the next frame is measured against this one
-      if (!reconstructor_.StartFrame(frame.intra())) return false;
-      reconstructor_.Reconstruct(predictor.frames().back());
-    }
+    // The next frame may be measured against this one.
+    if (repeats && !UsesKeyReference()) reconstructor_.Reconstruct(predictor.frames().back());
   }
   last_positions_ = frames.back();
   for (std::size_t i = 0; i < structure.size(); ++i) {
@@ -125,46 +136,65 @@ bool GroupEncoder::RepeatFrame(const std::vector<PositionMatrix>& frames, const 
                                const Predictor& predictor, FrameSyntax& frame) const {
   const auto index = static_cast<std::uint32_t>(predictor.frames().size());
   const PositionMatrix& positions = frames[frame.slot.display];
-  frame.motion.assign(last_.motion.size(), 0);
-  frame.displacement.assign(last_.displacement.size(), 0);
   if (index == 0) {  // what the last group ended with, coded from zero
     if (!UsesKeyReference() || positions != last_positions_) return false;
     frame.rigid = last_.rigid;
-    return ExactResidual(last_.motion, frame.motion) && ExactResidual(last_.displacement, frame.displacement);
-  }
-  for (std::uint32_t i = UsesKeyReference() ? 0 : index - 1; i < index; ++i) {
-    if (positions != frames[structure[i].display]) continue;
-    // The structure's own references will do if they predict the same.
-    const FrameCoefficients prediction = predictor.Predict(frame.slot.references);
-    const FrameCoefficients& wanted = predictor.frames()[i];
-    if (prediction.rigid != wanted.rigid || prediction.motion != wanted.motion ||
-        prediction.displacement != wanted.displacement) {
-      frame.slot.references = {i};
+    for (std::size_t p = 0; p < kPlanes; ++p) {
+      if (!ExactResidual(last_.planes[p], frame.planes[p])) return false;
     }
+    return true;
+  }
+  if (!UsesKeyReference()) return positions == frames[frame.slot.display - 1];
+  for (std::uint32_t i = 0; i < index; ++i) {
+    if (positions != frames[structure[i].display]) continue;
+    const FrameCoefficients& wanted = predictor.frames()[i];
+    if (!ExactResidual(wanted.planes[kCorrection], frame.planes[kCorrection])) return false;
+    // The structure's own references will do if they predict the same.
+    FrameCoefficients prediction = predictor.Predict(frame.slot.references);
+    prediction.planes[kCorrection] = wanted.planes[kCorrection];
+    if (prediction.rigid != wanted.rigid || prediction.planes != wanted.planes) frame.slot.references = {i};
     return true;
   }
   return false;
 }
 
+void GroupEncoder::Quantize(Plane plane, const Eigen::MatrixXd& target, FrameCoefficients& coefficients,
+                            FrameSyntax& frame) const {
+  const std::int32_t step = LevelStep(header_, plane, frame.slot.level);
+  QuantizePlane(target, units_[plane], step, coefficients.planes[plane], frame.planes[plane]);
+  for (std::size_t i = 0; i < frame.planes[plane].size(); ++i) {
+    coefficients.planes[plane][i] += frame.planes[plane][i] * step;
+  }
+}
+
 void GroupEncoder::ChoosePlanes(const PositionMatrix& aligned, const Eigen::MatrixXd& motion_target,
                                 const Predictor& predictor, FrameSyntax& frame) {
-  const std::int32_t step = LevelStep(header_, frame.slot.level);
   FrameCoefficients coefficients = predictor.Predict(frame.slot.references);
-  QuantizePlane(motion_target, motion_units_, step, coefficients.motion, frame.motion);
+  Quantize(kMotion, motion_target, coefficients, frame);
   if (UsesKeyReference() && !frame.intra()) {  // a cut costs less from zero
-    const FrameCoefficients zero(shape_.order.size());
-    std::vector<std::int32_t> residual(frame.motion.size());
-    QuantizePlane(motion_target, motion_units_, step, zero.motion, residual);
-    if (EstimatedBits(residual) < EstimatedBits(frame.motion)) {
-      frame.slot.references.clear();
-      frame.motion = residual;
-      coefficients = zero;
+    FrameSyntax intra = frame;
+    intra.slot.references.clear();
+    FrameCoefficients from_zero = predictor.Predict({});
+    Quantize(kMotion, motion_target, from_zero, intra);
+    if (EstimatedBits(intra.planes[kMotion]) < EstimatedBits(frame.planes[kMotion])) {
+      frame = std::move(intra);
+      coefficients = std::move(from_zero);
     }
   }
-  for (std::size_t i = 0; i < frame.motion.size(); ++i) coefficients.motion[i] += frame.motion[i] * step;
-  const PositionMatrix& moved = reconstructor_.ReconstructMotion(coefficients.motion);
-  QuantizePlane(projection_.ProjectVertices(aligned - moved), displacement_units_, step, coefficients.displacement,
-                frame.displacement);
+  PositionMatrix left = aligned - reconstructor_.ReconstructMotion(coefficients.planes[kMotion]);
+  Quantize(kDisplacement, projection_.ProjectVertices(left), coefficients, frame);
+  left = aligned - reconstructor_.Add(kDisplacement, coefficients.planes[kDisplacement]);
+  if (header_.detail_step > 0) {
+    Quantize(kDetail, projection_.ProjectPatches(left), coefficients, frame);
+    left = aligned - reconstructor_.Add(kDetail, coefficients.planes[kDetail]);
+  }
+  if (header_.correction_step > 0) {
+    CorrectOverBound(left, header_.correction_step, max_error_, frame.planes[kCorrection]);
+    for (std::size_t i = 0; i < frame.planes[kCorrection].size(); ++i) {
+      coefficients.planes[kCorrection][i] = frame.planes[kCorrection][i] * kCoefficientsPerStep;
+    }
+    reconstructor_.Add(kCorrection, coefficients.planes[kCorrection]);
+  }
 }
 
 }  // namespace sac

@@ -19,7 +19,8 @@ namespace sac {
 class GroupEncoder {
  public:
   // `shape` must outlive it.
-  GroupEncoder(const Shape& shape, const SequenceHeader& header);
+  // `max_error`: what the correction plane leaves at most at any vertex, model units; of no meaning without that plane.
+  GroupEncoder(const Shape& shape, const SequenceHeader& header, double max_error);
 
   // `frames`: by time, in decoded vertex order, model units. `structure`: of the same number of frames. Appends the
   // frames in coding order. False when a value leaves the range of the format or a reference shape cannot be
@@ -40,7 +41,9 @@ class GroupEncoder {
   // Makes `frame` repeat an earlier one exactly if its input does; false if it does not.
   bool RepeatFrame(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
                    const Predictor& predictor, FrameSyntax& frame) const;
-  // Quantizes the planes' residuals; drops the references where coding from zero is cheaper.
+  // Quantizes what `target` is beyond the prediction in `coefficients`, and adds it there.
+  void Quantize(Plane plane, const Eigen::MatrixXd& target, FrameCoefficients& coefficients, FrameSyntax& frame) const;
+  // Chooses the planes' residuals; drops the references where coding from zero is cheaper.
   void ChoosePlanes(const PositionMatrix& aligned, const Eigen::MatrixXd& motion_target, const Predictor& predictor,
                     FrameSyntax& frame);
   bool UsesKeyReference() const { return header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kKey); }
@@ -49,8 +52,8 @@ class GroupEncoder {
   SequenceHeader header_;
   TriangleFields fields_;
   Projection projection_;
-  Eigen::VectorXd motion_units_;
-  Eigen::VectorXd displacement_units_;
+  std::array<Eigen::VectorXd, 3> units_;  // of the planes in harmonics
+  double max_error_;
   Reconstructor reconstructor_;
   Eigen::Vector3d last_rotation_ = Eigen::Vector3d::Zero();
   // The last frame of the group before, to stand still across the border.

@@ -11,6 +11,17 @@ Eigen::LDLT<Eigen::MatrixXd> Factor(Eigen::MatrixXd gram) {
   return Eigen::LDLT<Eigen::MatrixXd>(gram);
 }
 
+// The rows of each component's coefficients in the order of a plane's.
+Eigen::MatrixXd InOrder(const HarmonicBasis& basis, const std::vector<Eigen::MatrixXd>& coefficients) {
+  const Eigen::Index channels = coefficients.empty() ? 0 : coefficients[0].cols();
+  Eigen::MatrixXd rows(static_cast<Eigen::Index>(basis.order.size()), channels);
+  for (std::size_t i = 0; i < basis.order.size(); ++i) {
+    const HarmonicIndex& index = basis.order[i];
+    rows.row(static_cast<Eigen::Index>(i)) = coefficients[index.component].row(index.k);
+  }
+  return rows;
+}
+
 }  // namespace
 
 Projection::Projection(const Shape& shape, const Eigen::VectorXd& areas)
@@ -47,12 +58,7 @@ Eigen::MatrixXd Projection::Solve(const Eigen::MatrixXd& at_vertices,
         (systems_[i].*system)
             .solve(c.vectors.transpose() * at_vertices.middleRows(c.component.first, c.component.count)));
   }
-  Eigen::MatrixXd coefficients(static_cast<Eigen::Index>(shape_.order.size()), at_vertices.cols());
-  for (std::size_t i = 0; i < shape_.order.size(); ++i) {
-    const HarmonicIndex& index = shape_.order[i];
-    coefficients.row(static_cast<Eigen::Index>(i)) = solutions[index.component].row(index.k);
-  }
-  return coefficients;
+  return InOrder(shape_.basis, solutions);
 }
 
 Eigen::MatrixXd Projection::ProjectTriangles(const Eigen::MatrixXd& fields) const {
@@ -69,6 +75,16 @@ Eigen::MatrixXd Projection::ProjectTriangles(const Eigen::MatrixXd& fields) cons
 
 Eigen::MatrixXd Projection::ProjectVertices(const Eigen::MatrixXd& field) const {
   return Solve(field, &Systems::vertices);
+}
+
+Eigen::MatrixXd Projection::ProjectPatches(const Eigen::MatrixXd& field) const {
+  std::vector<Eigen::MatrixXd> coefficients;
+  for (const ComponentHarmonics& c : shape_.patch_basis.components) {
+    // Orthogonal, of unit mean square.
+    coefficients.push_back(c.vectors.transpose() * field.middleRows(c.component.first, c.component.count) /
+                           c.component.count);
+  }
+  return InOrder(shape_.patch_basis, coefficients);
 }
 
 }  // namespace sac

@@ -22,6 +22,9 @@ class Projection {
   // The coefficients nearest to `field` (vertices x channels), every vertex alike.
   Eigen::MatrixXd ProjectVertices(const Eigen::MatrixXd& field) const;
 
+  // The same in patch harmonics.
+  Eigen::MatrixXd ProjectPatches(const Eigen::MatrixXd& field) const;
+
  private:
   struct Systems {
     Eigen::LDLT<Eigen::MatrixXd> triangles;

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "codec/mesh.h"
+
+namespace sac {
+
+using GridPosition = std::array<std::uint32_t, 3>;
+
+// Vertices of a component in an order in which each patch is a run, and the patches' sizes.
+struct PatchOrder {
+  std::vector<std::uint32_t> vertices;
+  std::vector<std::uint32_t> sizes;
+};
+
+// Cuts one component into connected patches of at most `size` vertices (spec.md 5.4): halves by position along the
+// longest axis, integers alone, then the connected pieces of what is left. `neighbours` of vertex v: those in
+// [offsets[v], offsets[v + 1]).
+struct VertexGraph {
+  std::vector<std::uint32_t> offsets;
+  std::vector<std::uint32_t> neighbours;
+};
+
+VertexGraph BuildGraph(std::uint32_t vertices, std::span<const Triangle> triangles);
+PatchOrder CutIntoPatches(std::span<const GridPosition> grid, const VertexGraph& graph,
+                          std::vector<std::uint32_t> component, std::uint32_t size);
+
+}  // namespace sac
