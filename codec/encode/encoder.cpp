@@ -194,7 +194,7 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   header.frame_rate_denominator = settings.frame_rate_denominator;
   header.motion_step = static_cast<float>(settings.motion_step.value_or(quality.motion_step));
   header.displacement_step = static_cast<float>(displacement_step * rms);
-  const double detail_step = settings.detail_step.value_or(0);
+  const double detail_step = settings.detail_step.value_or(quality.detail_step);
   header.detail_step = static_cast<float>(detail_step * rms);
   header.patch_size = header.vertices <= kLargePatchVertices ? kLargePatch : kSmallPatch;
   double bound = 0;

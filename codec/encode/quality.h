@@ -4,12 +4,14 @@ namespace sac {
 
 // What one figure of quality stands for.
 struct QualitySettings {
+  double quality;
   double motion_step;        // radians and strain
   double displacement_step;  // fraction of the RMS radius
+  double detail_step;        // fraction of the RMS radius; 0: no detail plane
   int position_bits;
 };
 
-// From a table measured on several clips (docs/quality.md), interpolated between its rows.
+// `quality` from 0 to 100: from a table measured on several clips (docs/quality.md), interpolated between its rows.
 QualitySettings SettingsOfQuality(double quality);
 
 }  // namespace sac
