@@ -25,6 +25,12 @@ PlaneLayouts LayOutPlanes(const SequenceHeader& header, std::span<const std::uin
   return layouts;
 }
 
+std::uint64_t FrameValues(const PlaneLayouts& layouts) {
+  std::uint64_t values = 0;
+  for (const PlaneLayout& layout : layouts) values += layout.size();
+  return values;
+}
+
 FramePlanes EmptyPlanes(const PlaneLayouts& layouts) {
   FramePlanes planes;
   for (std::size_t p = 0; p < kPlanes; ++p) planes[p].assign(layouts[p].size(), 0);

@@ -33,6 +33,9 @@ using PlaneLayouts = std::array<PlaneLayout, kPlanes>;
 PlaneLayouts LayOutPlanes(const SequenceHeader& header, std::span<const std::uint32_t> harmonics,
                           std::span<const std::uint32_t> patches);
 
+// Coefficients of one frame, all planes together.
+std::uint64_t FrameValues(const PlaneLayouts& layouts);
+
 // Coefficients of a plane, as PlaneLayout orders them.
 using PlaneValues = std::vector<std::int32_t>;
 using FramePlanes = std::array<PlaneValues, kPlanes>;

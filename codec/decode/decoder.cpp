@@ -137,6 +137,9 @@ Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload) {
     return Status::Limit(std::to_string(frames) + " frames in a group, the limit is " +
                          std::to_string(limits_.frames_per_group));
   }
+  if (frames * FrameValues(shape_.layouts) > limits_.group_values) {
+    return Status::Limit("a group holds more coefficients than the limit");
+  }
   if (frames > 0xffffffffu - frame_count_) return Status::Corrupt("group: too many frames");
   const std::uint32_t pyramid = reader.Varint();
   if (!reader.ok() || pyramid == 0) return Status::Corrupt("group: malformed pyramid");

@@ -248,7 +248,10 @@ Status Encoder::Impl::Send(std::span<const Vec3f> positions) {
         static_cast<double>(p[2]);
   }
   ++frame_count_;
-  return group_.size() == settings_.group ? FlushGroup() : Status::Ok();
+  // A group is no longer than any decoder takes by default.
+  const bool full =
+      group_.size() == settings_.group || (group_.size() + 1) * FrameValues(shape_.layouts) > Limits{}.group_values;
+  return full ? FlushGroup() : Status::Ok();
 }
 
 Status Encoder::Impl::FlushGroup() {

@@ -42,10 +42,11 @@ bool ExactResidual(const PlaneValues& wanted, PlaneValues& residual) {
 // Corrects each vertex that is farther off than `max_error`, to within half a step along each axis.
 void CorrectOverBound(const PositionMatrix& left, double step, double max_error, PlaneValues& correction) {
   for (Eigen::Index v = 0; v < left.rows(); ++v) {
-    if (left.row(v).norm() <= max_error) continue;
+    const bool good = left.row(v).norm() <= max_error;
     for (Eigen::Index a = 0; a < 3; ++a) {
-      correction[static_cast<std::size_t>(3 * v + a)] =
-          static_cast<std::int32_t>(std::clamp(std::round(left(v, a) / step), -1.0 * kMaxResidual, 1.0 * kMaxResidual));
+      const double steps =
+          good ? 0 : std::clamp(std::round(left(v, a) / step), -1.0 * kMaxResidual, 1.0 * kMaxResidual);
+      correction[static_cast<std::size_t>(3 * v + a)] = static_cast<std::int32_t>(steps);
     }
   }
 }
@@ -81,22 +82,28 @@ Eigen::MatrixXd GroupEncoder::MeasureMotion(const PositionMatrix& aligned) {
   return projection_.ProjectTriangles(fields_.Measure(reconstructor_.reference(), aligned));
 }
 
-bool GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
-                          std::vector<FrameSyntax>& coded) {
-  // 1. By time, because rotations are unwrapped in time: rigid motions, then, against the one reference shape, fields.
-  std::vector<RigidTarget> rigid_targets;
-  for (const PositionMatrix& positions : frames) rigid_targets.push_back(FitTarget(positions));
-  std::vector<std::array<std::int32_t, 6>> rigid(frames.size());
+std::vector<GroupEncoder::Rigid> GroupEncoder::ChooseRigid(const std::vector<PositionMatrix>& frames,
+                                                           const std::vector<FrameSlot>& structure) {
+  std::vector<RigidTarget> targets;
+  for (const PositionMatrix& positions : frames) targets.push_back(FitTarget(positions));
+  std::vector<Rigid> rigid(frames.size());
   for (const FrameSlot& slot : structure) {
+    const RigidTarget& target = targets[slot.display];
     for (std::size_t i = 0; i < 6; ++i) {
       std::int64_t sum = 0;
       for (const std::uint32_t r : slot.references) sum += rigid[structure[r].display][i];
-      const auto prediction = slot.references.size() == 2 ? (sum + 1) >> 1 : sum;
-      const RigidTarget& target = rigid_targets[slot.display];
+      const std::int64_t prediction = slot.references.size() == 2 ? (sum + 1) >> 1 : sum;
       const bool near = std::abs(target.value[i] - static_cast<double>(prediction)) <= target.slack;
       rigid[slot.display][i] = near ? static_cast<std::int32_t>(prediction) : Rounded(target.value[i]);
     }
   }
+  return rigid;
+}
+
+bool GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
+                          std::vector<FrameSyntax>& coded) {
+  // 1. By time, because rotations are unwrapped in time: rigid motions, then, against the one reference shape, fields.
+  const std::vector<Rigid> rigid = ChooseRigid(frames, structure);
   std::vector<Eigen::MatrixXd> motion_targets(frames.size());
   if (!reconstructor_.StartGroup()) return false;
   if (UsesKeyReference()) {

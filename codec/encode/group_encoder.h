@@ -35,7 +35,10 @@ class GroupEncoder {
     std::array<double, 6> value;
     double slack;
   };
+  using Rigid = std::array<std::int32_t, 6>;
   RigidTarget FitTarget(const PositionMatrix& positions);
+  // The rigid motion of each frame, by time, near enough to the best and easy to predict.
+  std::vector<Rigid> ChooseRigid(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure);
   // The motion plane's coefficients of `aligned` against the present reference shape, in real numbers.
   Eigen::MatrixXd MeasureMotion(const PositionMatrix& aligned);
   // Makes `frame` repeat an earlier one exactly if its input does; false if it does not.
