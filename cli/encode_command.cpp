@@ -21,6 +21,7 @@ namespace sac {
 namespace {
 
 constexpr double kLeastStep = 1e-9, kLargestStep = 1e9;
+constexpr double kLeastError = 1e-30, kLargestError = 1e30;  // model units
 
 struct EncodeOptions {
   CheckedEncoding::Settings settings;
@@ -84,9 +85,12 @@ Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, doubl
   settings["fps"] = header.frame_rate_numerator == 0 ? Json() : Json(RateText(header));
   settings["harmonics"] = encoder.harmonics;
   settings["group"] = encoder.group;
+  settings["pyramid"] = encoder.pyramid;
   settings["reference"] = options.reference;
   settings["motion_step"] = or_null(encoder.motion_step);  // null: from the quality
   settings["displacement_step"] = or_null(encoder.displacement_step);
+  settings["detail_step"] = or_null(encoder.detail_step);
+  settings["max_error"] = or_null(encoder.max_error);
   settings["position_bits"] = or_null(encoder.position_bits);
   settings["keep_order"] = encoder.keep_order;
   return json;
@@ -153,6 +157,8 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
             "manifold harmonics over all components; time and memory grow with them [200]");
   AddNumber(app, "--group", encoder.group, 1u, Limits{}.frames_per_group,
             "frames between points of random access [128]");
+  AddNumber(app, "--pyramid", encoder.pyramid, 1u, Limits{}.frames_per_group,
+            "frames of a hierarchy of B-frames; 1 for P-frames only [16]");
   app.add_option("--reference", o.reference,
                  "what motion is measured against: key, the first frame, or previous, the frame before [key]")
       ->check(CLI::IsMember(std::vector<std::string>{"key", "previous"}))
@@ -161,6 +167,10 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
             "quantizer step of rotation and stretch, radians and strain [from the quality]");
   AddNumber(app, "--displacement-step", encoder.displacement_step, kLeastStep, kLargestStep,
             "quantizer step of displacement, as a fraction of the first frame's RMS radius [from the quality]");
+  AddNumber(app, "--detail-step", encoder.detail_step, 0.0, kLargestStep,
+            "quantizer step of local detail, as a fraction of the RMS radius; 0 for none [from the quality]");
+  AddNumber(app, "--max-error", encoder.max_error, kLeastError, kLargestError,
+            "no vertex of any frame is farther off than this, model units [no bound]");
   AddNumber(app, "--position-bits", encoder.position_bits, 1, 24,
             "bits of a coordinate of the first frame [from the quality]");
   app.add_flag("--keep-order", encoder.keep_order, "put the order of the vertices in the stream");
