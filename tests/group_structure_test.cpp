@@ -41,6 +41,13 @@ TEST(GroupStructure, OfAPyramidOfFourByHand) {
   }
 }
 
+TEST(GroupStructure, HalvesDownwards) {
+  const auto slots = GroupStructure(4, 16);
+  ASSERT_EQ(slots.size(), 4u);
+  const std::uint32_t display[] = {0, 3, 1, 2};
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(slots[i].display, display[i]) << i;
+}
+
 TEST(GroupStructure, ShowsEveryFrameOnceAndLooksBackInCodingOrder) {
   for (const std::uint32_t frames : {1u, 2u, 3u, 16u, 17u, 18u, 100u, 4096u}) {
     for (const std::uint32_t pyramid : {1u, 2u, 3u, 7u, 16u, 4096u, 0xffffffffu}) {

@@ -129,6 +129,9 @@ TEST(IFrameSyntax, EveryRuleIsChecked) {
   s.welds.push_back({120, 0});
   EXPECT_EQ(Parse(s).code(), StatusCode::kCorrupt) << "more points than Draco's triangles have corners";
   s = Everything();
+  s.welds[2].onto = s.welds[2].point + 0x80000001u;  // 2^31 - 1 points back
+  EXPECT_EQ(Parse(s).code(), StatusCode::kCorrupt) << "a weld onto a point before the first";
+  s = Everything();
   s.loose_vertices[1].position[2] = 4096;
   EXPECT_EQ(Parse(s).code(), StatusCode::kCorrupt) << "off the grid";
   s = Everything();
