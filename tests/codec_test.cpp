@@ -2,6 +2,7 @@
 
 #include <numeric>
 #include <optional>
+#include <random>
 
 #include "format/packet.h"
 #include "tests/test_clips.h"
@@ -65,6 +66,49 @@ TEST(Codec, LevelsOfAPyramidMayBeCoarser) {
   const Encoded coarse = Encode(clip, settings);
   ExpectWithin(clip, coarse, std::pow(1.5, 4) * Bound(clip, kStep));
   EXPECT_LT(coarse.bytes.size(), Encode(clip, Complete(clip)).bytes.size());
+}
+
+// A tube whose skin shivers: nothing that a few harmonics could follow.
+Clip ShiveringClip(std::size_t frames) {
+  Clip clip = BendingClip(frames);
+  std::mt19937 random(1);
+  for (std::size_t t = 1; t < frames; ++t) {
+    for (Vec3f& p : clip.frames[t]) {
+      for (float& x : p) x += static_cast<float>(0.05 * Signed(random));
+    }
+  }
+  return clip;
+}
+
+TEST(Codec, DetailFollowsItsStep) {
+  const Clip clip = ShiveringClip(10);
+  EncoderSettings settings;
+  settings.harmonics = 10;
+  settings.level_growth = 1;
+  for (const double step : {1e-2, 1e-3, 1e-4}) {
+    settings.detail_step = step;
+    ExpectWithin(clip, Encode(clip, settings), Bound(clip, step));
+  }
+}
+
+TEST(Codec, NoVertexIsFartherOffThanAllowed) {
+  for (const double bound : {0.1, 1e-2, 1e-3, 1e-5}) {
+    for (const ReferenceShape reference : {ReferenceShape::kKey, ReferenceShape::kPrevious}) {
+      EncoderSettings settings;
+      settings.max_error = bound;
+      settings.reference_shape = reference;
+      settings.group = 4;
+      if (reference == ReferenceShape::kPrevious) settings.pyramid = 1;
+      for (const Clip& clip : {ShiveringClip(6), TurningPartsClip(6)}) {
+        const Encoded encoded = Encode(clip, settings);
+        const Decoded decoded = Decode(encoded.bytes);
+        ASSERT_EQ(decoded.frames.size(), 6u) << decoded.status.message();
+        for (std::size_t t = 1; t < 6; ++t) {
+          EXPECT_LE(MaxDistance(clip.frames[t], decoded.frames[t].positions, encoded.order), bound) << t;
+        }
+      }
+    }
+  }
 }
 
 TEST(Codec, DefaultsAreClose) {

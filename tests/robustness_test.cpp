@@ -23,6 +23,9 @@ std::vector<Bytes> Streams() {
   EncoderSettings ordered = plain;
   ordered.keep_order = true;
   ordered.group = 16;
+  EncoderSettings fine = plain;
+  fine.detail_step = 0.002;
+  fine.max_error = 0.01;
   Clip bending{TubeMesh(4, 5), {}};
   for (int t = 0; t < 7; ++t) bending.frames.push_back(BentTube(bending.mesh, 0.2 * t));
   Clip parts;  // with attributes and whatever Draco does not take
@@ -36,7 +39,8 @@ std::vector<Bytes> Streams() {
   for (int t = 0; t < 5; ++t) {
     parts.frames.push_back(Moved(parts.mesh.positions, AxisAngle({1, 1, 0}, 0.3 * t), {0.1 * t, 0, 0}));
   }
-  return {Encode(bending, plain).bytes, Encode(bending, previous).bytes, Encode(parts, ordered).bytes};
+  return {Encode(bending, plain).bytes, Encode(bending, previous).bytes, Encode(parts, ordered).bytes,
+          Encode(bending, fine).bytes};
 }
 
 std::vector<Packet> Packets(const Bytes& stream) {

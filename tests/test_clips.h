@@ -114,6 +114,16 @@ inline double MaxError(const Positions& input, const Positions& decoded, const s
   return most;
 }
 
+// The largest distance of a decoded vertex to the input's.
+inline double MaxDistance(const Positions& input, const Positions& decoded, const std::vector<std::uint32_t>& order) {
+  const PositionMatrix a = ToMatrix(input), b = ToMatrix(decoded);
+  double most = 0;
+  for (std::size_t v = 0; v < order.size(); ++v) {
+    most = std::max(most, (a.row(order[v]) - b.row(static_cast<Eigen::Index>(v))).norm());
+  }
+  return most;
+}
+
 // A tube that bends from straight to and fro.
 inline Clip BendingClip(std::size_t frames, double angle = 2) {
   Clip clip{TubeMesh(10, 8), {}};
