@@ -1,0 +1,11 @@
+#pragma once
+
+#include <filesystem>
+
+namespace sac {
+
+// Writes the bytes and the positions of SmallStream() into the examples of spec.md, appendix A. False when the file or
+// the examples are missing.
+bool UpdateAppendix(const std::filesystem::path& spec);
+
+}  // namespace sac

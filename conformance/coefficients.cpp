@@ -1,0 +1,79 @@
+#include "conformance/coefficients.h"
+
+#include <optional>
+#include <utility>
+#include <vector>
+
+#include "codec/decode/draco_mesh.h"
+#include "codec/decode/i_frame.h"
+#include "codec/prediction.h"
+#include "format/bytes.h"
+#include "format/crc32.h"
+#include "format/frame_syntax.h"
+#include "format/i_frame_syntax.h"
+#include "format/packet.h"
+
+namespace sac {
+namespace {
+
+std::uint32_t Add(std::span<const std::int32_t> values, std::uint32_t crc) {
+  ByteWriter bytes;
+  for (const std::int32_t v : values) bytes.U32(static_cast<std::uint32_t>(v));
+  return Crc32(bytes.bytes(), crc);
+}
+
+Status ParseLayouts(std::span<const std::uint8_t> payload, const SequenceHeader& header, PlaneLayouts& layouts) {
+  IFrameSyntax syntax;
+  SAC_RETURN_IF_ERROR(ParseIFrame(payload, header, syntax));
+  DracoMesh draco;
+  SAC_RETURN_IF_ERROR(DecodeDraco(syntax.mesh, header, draco));
+  DecodedIFrame decoded;
+  SAC_RETURN_IF_ERROR(AssembleIFrame(syntax, header, std::move(draco), decoded));
+  std::vector<std::uint32_t> patch_sizes;
+  for (const Component& patch : decoded.mesh.patches) patch_sizes.push_back(patch.count);
+  layouts = LayOutPlanes(header, syntax.harmonics, patch_sizes);
+  return Status::Ok();
+}
+
+Status AddGroup(std::span<const std::uint8_t> payload, const SequenceHeader& header, const PlaneLayouts& layouts,
+                std::uint32_t& crc) {
+  ByteReader reader(payload);
+  const std::uint32_t frames = reader.Varint(), pyramid = reader.Varint();
+  RangeDecoder range(payload.subspan(reader.position()));
+  FrameCoder<RangeDecoder> coder(layouts);
+  Predictor predictor(header, layouts);
+  const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
+  std::vector<std::size_t> slot_of(frames);
+  for (std::size_t i = 0; i < structure.size(); ++i) {
+    FrameSyntax frame;
+    if (!coder.Code(range, structure[i], frame) || !predictor.Add(frame)) return Status::Corrupt("malformed frame");
+    slot_of[structure[i].display] = i;
+  }
+  for (const std::size_t slot : slot_of) {
+    const FrameCoefficients& c = predictor.frames()[slot];
+    crc = Add(c.rigid, crc);
+    for (const PlaneValues& plane : c.planes) crc = Add(plane, crc);
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+Status CoefficientsCrc32(std::span<const std::uint8_t> stream, std::uint32_t& crc) {
+  const Limits limits;
+  PacketReader packets(limits);
+  SequenceHeader header;
+  PlaneLayouts layouts;
+  crc = 0;
+  while (!stream.empty()) {
+    std::optional<Packet> packet;
+    SAC_RETURN_IF_ERROR(packets.Read(stream, packet));
+    if (!packet) break;
+    if (packet->type == PacketType::kHeader) SAC_RETURN_IF_ERROR(ParseSequenceHeader(packet->payload, limits, header));
+    if (packet->type == PacketType::kIFrame) SAC_RETURN_IF_ERROR(ParseLayouts(packet->payload, header, layouts));
+    if (packet->type == PacketType::kGroup) SAC_RETURN_IF_ERROR(AddGroup(packet->payload, header, layouts, crc));
+  }
+  return Status::Ok();
+}
+
+}  // namespace sac

@@ -1,0 +1,153 @@
+#include "conformance/stream_parts.h"
+
+#include <cstdio>
+#include <cstdlib>
+#include <memory>
+#include <optional>
+#include <utility>
+
+#include "codec/decode/draco_mesh.h"
+#include "codec/decode/i_frame.h"
+#include "codec/shape.h"
+#include "format/bytes.h"
+#include "format/packet.h"
+
+namespace sac {
+namespace {
+
+void Require(const Status& status) {
+  if (status.ok()) return;
+  std::fprintf(stderr, "make_vectors: %s\n", status.message().c_str());
+  std::exit(1);
+}
+
+}  // namespace
+
+Bytes Magic() { return {std::begin(kMagic), std::end(kMagic)}; }
+
+void AppendPacket(Bytes& stream, PacketType type, const Bytes& payload) {
+  const Bytes packet = WritePacket(type, payload);
+  stream.insert(stream.end(), packet.begin(), packet.end());
+}
+
+Bytes StreamParts::Join() const {
+  Bytes stream = Magic();
+  AppendPacket(stream, PacketType::kHeader, WriteSequenceHeader(header));
+  AppendPacket(stream, PacketType::kIFrame, WriteIFrame(i_frame, header));
+  for (const Bytes& group : groups) AppendPacket(stream, PacketType::kGroup, group);
+  ByteWriter end;
+  end.Varint(frames);
+  AppendPacket(stream, PacketType::kEnd, end.bytes());
+  return stream;
+}
+
+Bytes Encode(const Clip& clip, const EncoderSettings& settings) {
+  std::unique_ptr<Encoder> encoder;
+  Require(Encoder::Create(clip.mesh, settings, encoder));
+  for (const Positions& frame : clip.frames) Require(encoder->Send(frame));
+  Require(encoder->Finish());
+  return encoder->TakeBytes();
+}
+
+StreamParts Split(const Bytes& stream) {
+  const Limits limits;
+  StreamParts parts;
+  PacketReader packets(limits);
+  for (std::span<const std::uint8_t> rest(stream); !rest.empty();) {
+    std::optional<Packet> packet;
+    Require(packets.Read(rest, packet));
+    if (!packet) break;
+    ByteReader reader(packet->payload);
+    switch (packet->type) {
+      case PacketType::kHeader:
+        Require(ParseSequenceHeader(packet->payload, limits, parts.header));
+        break;
+      case PacketType::kIFrame:
+        Require(ParseIFrame(packet->payload, parts.header, parts.i_frame));
+        break;
+      case PacketType::kGroup:
+        parts.groups.push_back(packet->payload);
+        break;
+      case PacketType::kEnd:
+        parts.frames = reader.Varint();
+        break;
+    }
+  }
+  return parts;
+}
+
+void Derive(StreamParts& parts) {
+  DracoMesh draco;
+  DecodedIFrame decoded;
+  Shape shape;
+  Require(DecodeDraco(parts.i_frame.mesh, parts.header, draco));
+  Require(AssembleIFrame(parts.i_frame, parts.header, std::move(draco), decoded));
+  Require(BuildShape(parts.header, std::move(decoded.mesh), parts.i_frame.harmonics, parts.i_frame.samples_per_harmonic,
+                     Limits{}, shape));
+  parts.i_frame.fingerprint = shape.basis.Fingerprint();
+  parts.layouts = shape.layouts;
+}
+
+Bytes CodeGroup(const StreamParts& parts, std::uint32_t frames, std::uint32_t pyramid,
+                const std::function<void(std::uint32_t, FrameSyntax&)>& fill) {
+  ByteWriter payload;
+  payload.Varint(frames);
+  payload.Varint(pyramid);
+  RangeEncoder range;
+  FrameCoder<RangeEncoder> coder(parts.layouts);
+  std::uint32_t index = 0;
+  for (const FrameSlot& slot : GroupStructure(frames, pyramid)) {
+    FrameSyntax frame;
+    frame.slot = slot;
+    frame.planes = EmptyPlanes(parts.layouts);
+    fill(index++, frame);
+    if (!coder.Code(range, slot, frame)) break;
+  }
+  payload.Bytes(range.Finish());
+  return payload.bytes();
+}
+
+StreamParts SmallStream() {
+  StreamParts parts;
+  SequenceHeader& h = parts.header;
+  h.reference_shape = 0;
+  h.position_bits = 4;
+  h.level_growth = 80;
+  h.vertices = 4;
+  h.triangles = 2;
+  h.harmonics = 3;
+  h.patch_size = 2;
+  h.frame_rate_numerator = 25;
+  h.frame_rate_denominator = 1;
+  h.origin_x = -1;
+  h.cell = 0.25f;
+  h.motion_step = 0.0625f;
+  h.displacement_step = 0.125f;
+  h.detail_step = 0.0625f;
+  h.correction_step = 0.03125f;
+  h.rotation_step = 0.125f;
+  h.translation_step = 0.5f;
+  // A square with one corner bent. Patches change the order of vertices 1 and 2.
+  for (const std::array<std::uint32_t, 3>& g : {std::array{0u, 0u, 0u}, {8u, 7u, 0u}, {8u, 0u, 0u}, {0u, 9u, 3u}}) {
+    parts.i_frame.loose_vertices.push_back({g, {}, {}});
+  }
+  parts.i_frame.loose_triangles = {{0, 2, 1}, {0, 1, 3}};
+  parts.i_frame.harmonics = {3};
+  Derive(parts);
+  parts.frames = 3;
+  parts.groups.push_back(CodeGroup(parts, 3, 2, [](std::uint32_t i, FrameSyntax& frame) {
+    if (i == 1) {  // frame 2: turned, moved, bent
+      frame.rigid = {0, 0, 4, 1, 0, -2};
+      frame.planes[kMotion][9 + 0] = 3;
+      frame.planes[kMotion][9 + 3] = -1;
+      frame.planes[kDisplacement][2] = 1;
+      frame.planes[kDisplacement][8] = 17;
+      frame.planes[kDetail][3] = -4;
+      frame.planes[kCorrection][11] = 2;
+    }
+    if (i == 2) frame.planes[kMotion][18 + 1] = -2;  // frame 1: half way, and some more
+  }));
+  return parts;
+}
+
+}  // namespace sac

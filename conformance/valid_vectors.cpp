@@ -1,0 +1,234 @@
+#include "conformance/valid_vectors.h"
+
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <random>
+
+#include "synth/synth.h"
+
+namespace sac {
+namespace {
+
+Clip Synth(SynthKind kind, std::uint32_t vertices, std::uint32_t frames) {
+  SynthClip synth;
+  if (const Status status = SynthClip::Create({kind, vertices, frames, 1}, synth); !status.ok()) {
+    std::fprintf(stderr, "make_vectors: %s\n", status.message().c_str());
+    std::exit(1);
+  }
+  Clip clip{synth.mesh(), {}};
+  for (std::uint32_t f = 0; f < frames; ++f) clip.frames.push_back(synth.Frame(f));
+  return clip;
+}
+
+// Frames that wave the mesh and turn it.
+Clip Wave(const Mesh& mesh, std::uint32_t frames) {
+  Clip clip{mesh, {}};
+  for (std::uint32_t f = 0; f < frames; ++f) {
+    const double t = 0.2 * f;
+    Positions& positions = clip.frames.emplace_back(mesh.positions);
+    for (Vec3f& p : positions) {
+      const double x = static_cast<double>(p[0]), y = static_cast<double>(p[1]), z = static_cast<double>(p[2]);
+      p = {static_cast<float>(x * std::cos(t) - y * std::sin(t)), static_cast<float>(x * std::sin(t) + y * std::cos(t)),
+           static_cast<float>(z + 0.3 * std::sin(t) * x * x)};
+    }
+  }
+  return clip;
+}
+
+// All that Draco cannot keep: two fans joined at one vertex, three triangles at an edge, a loose vertex, a degenerate
+// and a duplicate triangle, one turned around; with all attributes and a seam of texture coordinates.
+Mesh OddMesh() {
+  Mesh mesh;
+  mesh.positions = {{0, 0, 0},     {1, 0, 0},    {1, 1, 0},     {0, 1, 0},        {-1, 0, 0},     {-1, -1, 0.5f},
+                    {0, -1, 0.5f}, {2, 0.5f, 1}, {2, 0.5f, -1}, {0.5f, 2, 0.25f}, {1.5f, 2, 0.5f}};
+  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 4, 5}, {0, 5, 6}, {1, 2, 7},   {2, 1, 8},
+                    {3, 2, 9}, {3, 3, 2}, {0, 1, 2}, {2, 9, 3}, {10, 10, 10}};
+  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
+    const auto i = static_cast<std::uint8_t>(v);
+    mesh.normals.push_back(v % 2 ? Vec3f{0, 0, 1} : Vec3f{0.6f, 0, 0.8f});
+    mesh.colors.push_back({static_cast<std::uint8_t>(20 * i), 100, static_cast<std::uint8_t>(255 - i), 255});
+  }
+  for (std::size_t i = 0; i < 12; ++i) mesh.uvs.push_back({static_cast<float>(i) / 11, static_cast<float>(i % 3) / 2});
+  for (const Triangle& t : mesh.triangles) mesh.uv_triangles.push_back(t);
+  mesh.uv_triangles[1] = {0, 2, 11};  // the seam
+  return mesh;
+}
+
+// The first frame again and again, then motion, then its last frame again and again.
+Clip StandStill() {
+  Clip clip = Synth(SynthKind::kFlag, 120, 12);
+  clip.frames.insert(clip.frames.begin(), 9, clip.frames.front());
+  clip.frames.insert(clip.frames.end(), 9, clip.frames.back());
+  return clip;
+}
+
+Clip Cuts() {
+  Clip clip = Synth(SynthKind::kParts, 200, 24);
+  for (std::size_t f = 8; f < 16; ++f) {
+    for (Vec3f& p : clip.frames[f]) p = {p[1] + 3, -p[0], 0.5f * p[2]};
+  }
+  return clip;
+}
+
+// Residuals that no encoder would choose: of any magnitude, predicted from anything.
+void FillAtRandom(std::mt19937& random, const std::vector<std::uint32_t>* references, std::uint32_t index,
+                  FrameSyntax& frame) {
+  const auto residual = [&](std::uint32_t one_in, int most_bits) {
+    std::int32_t value = 0;
+    for (int bit = 0; bit < most_bits && random() % one_in == 0; ++bit) {
+      value = 2 * value + 1 + static_cast<std::int32_t>(random() % 2);
+    }
+    return random() % 2 ? value : -value;
+  };
+  if (references) {
+    frame.slot.references = *references;
+  } else if (index > 0 && random() % 2) {
+    frame.slot.references.resize(random() % 3);
+    for (std::uint32_t& r : frame.slot.references) r = random() % index;
+  }
+  if (random() % 4 == 0) return;
+  const std::uint32_t one_in = 2 + random() % 5;
+  for (std::int32_t& r : frame.rigid) r = residual(2, 9);
+  for (PlaneValues& plane : frame.planes) {
+    if (plane.empty() || random() % 3 == 0) continue;
+    for (std::int32_t& r : plane) r = residual(one_in, 8);
+    if (random() % 4 == 0) plane[random() % plane.size()] = random() % 2 ? 1 << 16 : -(1 << 16);
+  }
+}
+
+Bytes Perverse() {
+  EncoderSettings settings;
+  settings.harmonics = 30;
+  settings.motion_step = 1e-5;
+  settings.displacement_step = 1e-8;
+  settings.level_growth = 2;
+  settings.samples_per_harmonic = 3;
+  settings.frame_rate_numerator = 30000;
+  settings.frame_rate_denominator = 1001;
+  settings.detail_step = 1e-8;
+  StreamParts parts = Split(Encode(Synth(SynthKind::kVase, 100, 1), settings));
+  parts.groups.clear();
+  parts.header.patch_size = 20;
+  parts.header.correction_step = 1e-8f;
+  parts.header.rotation_step = 0.01f;
+  parts.header.translation_step = 0.01f;
+  Derive(parts);
+  std::mt19937 random(5);
+  parts.frames = 0;
+  for (const std::array<std::uint32_t, 2>& size : {std::array{9u, 8u}, {1u, 1u}, {7u, 3u}, {4u, 4000000000u}}) {
+    parts.groups.push_back(CodeGroup(parts, size[0], size[1], [&](std::uint32_t i, FrameSyntax& frame) {
+      FillAtRandom(random, nullptr, i, frame);
+    }));
+    parts.frames += size[0];
+  }
+  return parts.Join();
+}
+
+Bytes PerversePrevious() {
+  EncoderSettings settings;
+  settings.harmonics = 12;
+  settings.motion_step = 1e-5;
+  settings.displacement_step = 1e-8;
+  settings.reference_shape = ReferenceShape::kPrevious;
+  StreamParts parts = Split(Encode(Synth(SynthKind::kSphere, 100, 1), settings));
+  parts.header.rotation_step = 0.01f;
+  parts.header.translation_step = 0.01f;
+  parts.header.patch_size = 1;
+  parts.header.detail_step = 1e-8f;
+  parts.header.correction_step = 1e-8f;
+  Derive(parts);
+  std::mt19937 random(6);
+  parts.groups.clear();
+  parts.groups.push_back(CodeGroup(parts, 8, 1, [&](std::uint32_t i, FrameSyntax& frame) {
+    const std::vector<std::uint32_t> none;
+    FillAtRandom(random, i % 5 == 0 ? &none : &frame.slot.references, i, frame);
+  }));
+  parts.frames = 8;
+  return parts.Join();
+}
+
+}  // namespace
+
+std::vector<ValidVector> ValidVectors() {
+  std::vector<ValidVector> vectors;
+  const auto encode = [&](const char* name, const char* covers, const Clip& clip, EncoderSettings settings,
+                          double quality = 30) {
+    settings.quality = quality;
+    vectors.push_back({name, covers, Encode(clip, settings)});
+  };
+  EncoderSettings s;
+  s.harmonics = 60;
+
+  vectors.push_back({"small", "spec.md appendix A: no Draco mesh, 3 frames in a pyramid", SmallStream().Join()});
+  {
+    StreamParts none = SmallStream();
+    none.groups.clear();
+    none.frames = 0;
+    vectors.push_back({"no_frames", "no groups", none.Join()});
+  }
+
+  EncoderSettings pyramids = s;
+  pyramids.group = 20;
+  pyramids.pyramid = 8;
+  encode("pyramids", "B-frames, several groups, the last one short, reduced basis", Synth(SynthKind::kWalker, 2000, 45),
+         pyramids);
+  EncoderSettings chain = s;
+  chain.pyramid = 1;
+  chain.group = 8;
+  encode("chain", "P-frames only, texture coordinates, boundary", Synth(SynthKind::kFlag, 200, 12), chain);
+  EncoderSettings previous = s;
+  previous.reference_shape = ReferenceShape::kPrevious;
+  previous.group = 10;
+  encode("previous", "reference shape of the frame before", Synth(SynthKind::kFlag, 200, 16), previous);
+  EncoderSettings exact = s;
+  exact.samples_per_harmonic = 0;
+  exact.position_bits = 7;
+  encode("exact", "exact harmonics of a symmetric shape, normals", Synth(SynthKind::kSphere, 160, 20), exact);
+  EncoderSettings kept = s;
+  kept.keep_order = true;
+  encode("components", "many components, colours, kept order", Synth(SynthKind::kParts, 200, 20), kept);
+  encode("seam", "texture coordinates with a seam, kept order", Synth(SynthKind::kVase, 200, 10), kept);
+  encode("odd", "welds, loose vertices and triangles, all attributes, kept order", Wave(OddMesh(), 12), kept, 60);
+  encode("stand_still", "frames that repeat, within a group and across groups", StandStill(), pyramids);
+  encode("cuts", "intra frames within a group", Cuts(), pyramids);
+  EncoderSettings detail = s;
+  detail.harmonics = 20;
+  detail.detail_step = 0.003;
+  encode("detail", "a detail plane", Synth(SynthKind::kFlag, 250, 10), detail);
+  EncoderSettings bounded = s;
+  bounded.harmonics = 20;
+  bounded.max_error = 0.01;
+  encode("bounded", "a correction plane", Synth(SynthKind::kParts, 150, 8), bounded);
+  EncoderSettings everything = previous;
+  everything.detail_step = 0.01;
+  everything.max_error = 0.02;
+  encode("previous_everything", "all planes against the frame before", Synth(SynthKind::kFlag, 100, 8), everything);
+  encode("one_frame", "a single frame", Synth(SynthKind::kSphere, 100, 1), s);
+
+  EncoderSettings groups_of_one = s;
+  groups_of_one.group = 1;
+  encode("groups_of_one", "key frames only", Synth(SynthKind::kFlag, 100, 4), groups_of_one);
+  Mesh points;
+  points.positions = {{0, 0, 0}, {1, 2, 3}, {-1, 0, 0.5f}};
+  encode("points", "vertices without triangles", Wave(points, 6), s, 60);
+  Mesh point;
+  point.positions = {{5, 6, 7}};
+  encode("one_vertex", "one vertex", Wave(point, 3), s, 60);
+  EncoderSettings coarse = s;
+  coarse.position_bits = 1;
+  encode("coarse", "a grid of 2 places: vertices at one position, degenerate areas", Synth(SynthKind::kSphere, 60, 3),
+         coarse);
+  EncoderSettings fine = s;
+  fine.position_bits = 24;
+  encode("fine", "a grid of 2^24 places", Synth(SynthKind::kSphere, 60, 3), fine);
+
+  vectors.push_back({"perverse",
+                     "explicit references of all kinds, all magnitudes, level growth 2, levels above 2, a pyramid much "
+                     "longer than its group",
+                     Perverse()});
+  vectors.push_back({"perverse_previous", "the same against the frame before, with intra frames", PerversePrevious()});
+  return vectors;
+}
+
+}  // namespace sac

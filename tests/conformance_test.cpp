@@ -1,0 +1,151 @@
+// Decodes the vectors of conformance/ and compares with its manifest.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <nlohmann/json.hpp>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "codec/decode/decoder.h"
+#include "conformance/coefficients.h"
+#include "format/bytes.h"
+#include "format/crc32.h"
+
+namespace sac {
+namespace {
+
+using Json = nlohmann::json;
+using Bytes = std::vector<std::uint8_t>;
+
+const std::filesystem::path kDirectory = SAC_CONFORMANCE;
+
+const Json& Manifest() {
+  static const Json manifest = Json::parse(std::ifstream(kDirectory / "manifest.json"));
+  return manifest;
+}
+
+Bytes Read(const std::string& file) {
+  std::ifstream in(kDirectory / file, std::ios::binary);
+  EXPECT_TRUE(in) << file;
+  const std::vector<char> text{std::istreambuf_iterator<char>(in), {}};
+  return {text.begin(), text.end()};
+}
+
+struct Decoding {
+  Decoder decoder;
+  std::vector<DecodedFrame> frames;
+  Status status;
+};
+
+Decoding Decode(const Bytes& bytes) {
+  Decoding d;
+  for (std::span<const std::uint8_t> rest(bytes); !rest.empty();) {
+    d.status = d.decoder.Send(rest);
+    if (!d.status.ok()) return d;
+    DecodedFrame frame;
+    while ((d.status = d.decoder.Receive(frame)).ok()) d.frames.push_back(frame);
+    if (d.status.code() != StatusCode::kNeedMoreData) return d;
+  }
+  d.status = d.decoder.Finish();
+  return d;
+}
+
+template <class Tuples>
+std::string TuplesCrc32(const Tuples& tuples) {
+  ByteWriter bytes;
+  for (const auto& t : tuples) {
+    for (const std::uint32_t v : t) bytes.U32(v);
+  }
+  char text[9];
+  std::snprintf(text, sizeof text, "%08x", Crc32(bytes.bytes()));
+  return text;
+}
+
+TEST(Conformance, ValidStreamsDecode) {
+  for (const Json& vector : Manifest().at("valid")) {
+    const std::string file = vector.at("file");
+    SCOPED_TRACE(file);
+    const Bytes bytes = Read(file);
+    EXPECT_LT(bytes.size(), 10000u);
+    const Decoding d = Decode(bytes);
+    ASSERT_TRUE(d.status.ok()) << d.status.message();
+    const Mesh& mesh = *d.decoder.mesh();
+    EXPECT_EQ(d.frames.size(), vector.at("frames"));
+    EXPECT_EQ(mesh.positions.size(), vector.at("vertices"));
+    EXPECT_EQ(mesh.triangles.size(), vector.at("triangles"));
+    EXPECT_EQ(TuplesCrc32(mesh.triangles), vector.at("triangles_crc32"));
+    EXPECT_EQ(mesh.uvs.size(), vector.value("uvs", 0u));
+    EXPECT_EQ(mesh.normals.size(), vector.value("normals", 0u));
+    EXPECT_EQ(mesh.uvs.empty() ? "" : TuplesCrc32(mesh.uv_triangles), vector.value("uv_triangles_crc32", ""));
+    EXPECT_EQ(mesh.colors.empty() ? "" : TuplesCrc32(mesh.colors), vector.value("colors_crc32", ""));
+    std::vector<std::array<std::uint32_t, 1>> order;
+    for (const std::uint32_t i : d.decoder.order()) order.push_back({i});
+    EXPECT_EQ(order.empty() ? "" : TuplesCrc32(order), vector.value("order_crc32", ""));
+
+    std::uint32_t crc = 0;
+    ASSERT_TRUE(CoefficientsCrc32(bytes, crc).ok());
+    EXPECT_EQ(crc, std::stoul(vector.at("coefficients_crc32").get<std::string>(), nullptr, 16));
+
+    // spec.md 8: the tolerance, and what rounding to binary32 adds here and in the manifest.
+    double diagonal = 0;
+    for (std::size_t a = 0; a < 3; ++a) {
+      double low = std::numeric_limits<double>::max(), high = -low;
+      for (const Vec3f& p : mesh.positions) {
+        low = std::min(low, static_cast<double>(p[a]));
+        high = std::max(high, static_cast<double>(p[a]));
+      }
+      diagonal = std::hypot(diagonal, high - low);
+    }
+    const double tolerance = 1e-6 * std::max(diagonal, static_cast<double>(d.decoder.header()->cell));
+    for (const Json& row : vector.at("positions")) {
+      const auto& position = d.frames.at(row.at(0)).positions.at(row.at(1));
+      for (std::size_t a = 0; a < 3; ++a) {
+        const double expected = row.at(2 + a);
+        EXPECT_NEAR(static_cast<double>(position[a]), expected, tolerance + std::abs(expected) * 0x1p-23) << row;
+      }
+    }
+  }
+}
+
+TEST(Conformance, InvalidStreamsAreRefused) {
+  for (const Json& vector : Manifest().at("invalid")) {
+    const std::string file = vector.at("file"), wanted = vector.at("class");
+    const Decoding d = Decode(Read(file));
+    const StatusCode code = wanted == "limit"         ? StatusCode::kLimit
+                            : wanted == "unsupported" ? StatusCode::kUnsupported
+                                                      : StatusCode::kCorrupt;
+    EXPECT_EQ(d.status.code(), code) << file << ": " << d.status.message();
+  }
+}
+
+// Every rule of spec.md 11 has a file, but for those that none of 10 kB can break.
+TEST(Conformance, EveryRuleHasAFile) {
+  std::set<std::string> rules, broken;
+  std::ifstream spec(SAC_SPEC);
+  for (std::string line; std::getline(spec, line);) {
+    if (line.rfind("| R", 0) == 0) rules.insert(line.substr(2, line.find(' ', 2) - 2));
+  }
+  for (const Json& vector : Manifest().at("invalid")) broken.insert(vector.at("rule"));
+  for (const char* impractical : {"R45", "R49", "R57", "R60"}) EXPECT_TRUE(broken.insert(impractical).second);
+  EXPECT_EQ(broken, rules);
+}
+
+// Prints the decoder's messages, for a person to see that each file is refused for its own reason.
+TEST(Conformance, MessagesAreOfOneLine) {
+  for (const Json& vector : Manifest().at("invalid")) {
+    const Decoding d = Decode(Read(vector.at("file")));
+    EXPECT_EQ(d.status.message().find('\n'), std::string::npos);
+    std::printf("%-40s %s\n", vector.at("file").get<std::string>().c_str(), d.status.message().c_str());
+  }
+}
+
+}  // namespace
+}  // namespace sac
