@@ -80,7 +80,8 @@ std::vector<std::uint8_t> RangeEncoder::Finish() {
   }
   Narrow(static_cast<std::uint32_t>(value - low_), range_);
   for (int shift = 24; shift >= 0; shift -= 8) bytes_.push_back(static_cast<std::uint8_t>(low_ >> shift));
-  while (!bytes_.empty() && bytes_.back() == 0) bytes_.pop_back();
+  // Readers take four bytes at most after the end for zeros, those of this ending; zeros before it stay.
+  for (int i = 0; i < 4 && bytes_.back() == 0; ++i) bytes_.pop_back();
   return std::move(bytes_);
 }
 

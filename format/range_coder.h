@@ -35,7 +35,7 @@ class RangeEncoder {
   void Raw(std::uint32_t& value, int count);
   bool ok() const { return true; }
 
-  // Ends the code with the fewest bytes and returns all of them; trailing zero bytes are left out.
+  // Ends the code with the fewest bytes and returns all of them; up to four zero bytes at the end are left out.
   std::vector<std::uint8_t> Finish();
   // Length of the code so far in bits, to account for its parts.
   double bits() const {

@@ -81,6 +81,21 @@ TEST(RangeCoder, PropagatesCarries) {
   }
 }
 
+TEST(RangeCoder, KeepsZeroBytesBeforeItsEnding) {
+  // Ones leave the low end at zero, so that the whole code is zero bytes; only those of the ending may be left out.
+  RangeEncoder encoder;
+  std::uint32_t ones = 0xffff;
+  for (int i = 0; i < 20; ++i) encoder.Raw(ones, 16);
+  const Bytes code = encoder.Finish();
+  RangeDecoder decoder(code);
+  for (int i = 0; i < 20; ++i) {
+    std::uint32_t value = 0;
+    decoder.Raw(value, 16);
+    EXPECT_EQ(value, 0xffffu);
+  }
+  EXPECT_TRUE(decoder.AtEnd());
+}
+
 TEST(RangeCoder, OfNothingIsEmpty) {
   EXPECT_TRUE(Encode({}).empty());
   RangeDecoder coder({});
