@@ -27,7 +27,6 @@ std::vector<Item> RandomItems(std::mt19937& random, std::size_t count) {
     // Model m is 1 with probability 2^-2m, so that sure and unsure models alternate.
     item.value = item.width == 0 ? random() % (1u << (2 * item.model)) == 0 : random() >> (32 - item.width);
   }
-  items.push_back({8, 0, 0});  // so that the code does not end in zero bytes
   return items;
 }
 
