@@ -5,6 +5,19 @@
 
 namespace sac {
 
+namespace {
+
+// Multiplications that the harmonics of a component take, about: a dense problem of its vertices or samples, and the
+// products with its vertices.
+double BasisWork(double vertices, double harmonics, double samples) {
+  const bool reduced = samples > 0 && samples < vertices;
+  const bool dense = 2 * harmonics + 20 >= vertices;
+  const double size = reduced ? samples : dense ? vertices : 0;
+  return size * size * size + 10 * vertices * harmonics * harmonics;
+}
+
+}  // namespace
+
 Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<const std::uint32_t> counts,
                   std::uint32_t samples_per_harmonic, const Limits& limits, Shape& shape) {
   if (counts.size() != mesh.components.size()) {
@@ -12,13 +25,17 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
                            std::to_string(counts.size()));
   }
   std::uint64_t values = 0;
+  double work = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] == 0 || counts[i] > mesh.components[i].count) {
       return Status::Corrupt("I-frame: more harmonics than vertices in a component");
     }
     if (counts[i] > limits.harmonics) return Status::Limit("more harmonics in a component than the limit");
     values += static_cast<std::uint64_t>(counts[i]) * mesh.components[i].count;
+    work += BasisWork(mesh.components[i].count, counts[i], static_cast<double>(samples_per_harmonic) * counts[i]);
   }
+  if (header.detail_step > 0) work += 10.0 * header.patch_size * header.patch_size * header.vertices;
+  if (work > limits.basis_work) return Status::Limit("the harmonic basis takes more work than the limit");
   if (header.detail_step > 0) values += static_cast<std::uint64_t>(header.patch_size) * header.vertices;
   if (values > limits.basis_values) return Status::Limit("the harmonic basis is larger than the limit");
 

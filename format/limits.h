@@ -13,6 +13,7 @@ struct Limits {
   std::uint32_t frames_per_group = 4'096;
   std::uint32_t packet_bytes = 1u << 28;
   std::uint64_t group_values = 1u << 27;  // coefficients in all planes of a group together
+  double basis_work = 1e12;               // multiplications for all harmonics together, about (spec.md 9)
   std::uint64_t basis_values =
       1u << 28;  // doubles in all harmonics together: sum over components of vertices x harmonics
 };

@@ -1,6 +1,7 @@
 #include "codec/decode/decoder.h"
 
 #include <exception>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -199,7 +200,11 @@ Status Decoder::Impl::DecodeFrame(DecodedFrame& out) {
   if (!reconstructor_->StartFrame(out.intra)) {
     return Status::Corrupt("frame " + std::to_string(frame_count_) + ": the reference shape is singular");
   }
-  out.positions = ToPositions(reconstructor_->Reconstruct(group_[next_in_group_]));
+  const PositionMatrix positions = reconstructor_->Reconstruct(group_[next_in_group_]);
+  if (!(positions.array().abs() <= std::numeric_limits<float>::max()).all()) {
+    return Status::Corrupt("frame " + std::to_string(frame_count_) + ": positions that are not finite");
+  }
+  out.positions = ToPositions(positions);
   ++next_in_group_;
   ++frame_count_;
   return Status::Ok();

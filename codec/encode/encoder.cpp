@@ -25,6 +25,7 @@ Status CheckSettings(const EncoderSettings& s) {
   const auto positive = [](const std::optional<double>& v) { return !v || (std::isfinite(*v) && *v > 0); };
   if (!(s.quality >= 0 && s.quality <= 100)) return Status::InvalidArgument("quality must be from 0 to 100");
   if (s.harmonics == 0) return Status::InvalidArgument("at least one harmonic is needed");
+  if (s.samples_per_harmonic > 64) return Status::InvalidArgument("a reduced basis has at most 64 samples a harmonic");
   if (s.group == 0 || s.group > Limits{}.frames_per_group) {
     return Status::InvalidArgument("a group holds from 1 to " + std::to_string(Limits{}.frames_per_group) + " frames");
   }
@@ -214,6 +215,10 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   const std::vector<std::uint32_t> counts = ShareHarmonics(decoded.mesh, settings.harmonics);
   for (const std::uint32_t c : counts) header.harmonics += c;
   syntax.harmonics = counts;
+  SequenceHeader parsed;
+  if (const Status status = ParseSequenceHeader(WriteSequenceHeader(header), Limits{}, parsed); !status.ok()) {
+    return Status::InvalidArgument(status.message());  // such as a step that no float can hold
+  }
   syntax.samples_per_harmonic = settings.samples_per_harmonic;
   if (settings.keep_order) syntax.order = order;
   SAC_RETURN_IF_ERROR(

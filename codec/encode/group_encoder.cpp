@@ -30,6 +30,13 @@ Eigen::VectorXd ReferenceAreas(TriangleFields& fields, const PositionMatrix& pos
   return fields.areas();
 }
 
+// Whether a residual is as large as the format allows: then it says less than it should.
+bool IsSaturated(const FramePlanes& planes) {
+  return std::any_of(planes.begin(), planes.end(), [](const PlaneValues& values) {
+    return std::any_of(values.begin(), values.end(), [](std::int32_t v) { return std::abs(v) >= kMaxResidual; });
+  });
+}
+
 // The residual that makes `wanted` from zero at level 0, when there is one.
 bool ExactResidual(const PlaneValues& wanted, PlaneValues& residual) {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -128,7 +135,7 @@ bool GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::
       const FrameCoefficients prediction = predictor.Predict(frame.slot.references);
       for (std::size_t i = 0; i < 6; ++i) frame.rigid[i] = rigid[slot.display][i] - prediction.rigid[i];
     }
-    if (!predictor.Add(frame)) return false;
+    if (IsSaturated(frame.planes) || !predictor.Add(frame)) return false;
     // The next frame may be measured against this one.
     if (repeats && !UsesKeyReference()) reconstructor_.Reconstruct(predictor.frames().back());
   }
@@ -144,7 +151,7 @@ bool GroupEncoder::RepeatFrame(const std::vector<PositionMatrix>& frames, const 
   const auto index = static_cast<std::uint32_t>(predictor.frames().size());
   const PositionMatrix& positions = frames[frame.slot.display];
   if (index == 0) {  // what the last group ended with, coded from zero
-    if (!UsesKeyReference() || positions != last_positions_) return false;
+    if (!UsesKeyReference() || last_positions_.rows() == 0 || positions != last_positions_) return false;
     frame.rigid = last_.rigid;
     for (std::size_t p = 0; p < kPlanes; ++p) {
       if (!ExactResidual(last_.planes[p], frame.planes[p])) return false;
