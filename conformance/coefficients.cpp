@@ -35,45 +35,56 @@ Status ParseLayouts(std::span<const std::uint8_t> payload, const SequenceHeader&
   return Status::Ok();
 }
 
-Status AddGroup(std::span<const std::uint8_t> payload, const SequenceHeader& header, const PlaneLayouts& layouts,
-                std::uint32_t& crc) {
+using TakeFrame = std::function<void(const FrameSlot&, const FrameCoefficients&)>;
+
+Status ReadGroup(std::span<const std::uint8_t> payload, const SequenceHeader& header, const PlaneLayouts& layouts,
+                 const TakeFrame& take) {
   ByteReader reader(payload);
   const std::uint32_t frames = reader.Varint(), pyramid = reader.Varint();
+  if (!reader.ok()) return Status::Corrupt("malformed group");
   RangeDecoder range(payload.subspan(reader.position()));
   FrameCoder<RangeDecoder> coder(layouts);
   Predictor predictor(header, layouts);
-  const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
+  std::vector<FrameSlot> slots = GroupStructure(frames, pyramid);
   std::vector<std::size_t> slot_of(frames);
-  for (std::size_t i = 0; i < structure.size(); ++i) {
+  for (std::size_t i = 0; i < slots.size(); ++i) {
     FrameSyntax frame;
-    if (!coder.Code(range, structure[i], frame) || !predictor.Add(frame)) return Status::Corrupt("malformed frame");
-    slot_of[structure[i].display] = i;
+    if (!coder.Code(range, slots[i], frame) || !predictor.Add(frame)) return Status::Corrupt("malformed frame");
+    slots[i] = frame.slot;
+    slot_of[slots[i].display] = i;
   }
-  for (const std::size_t slot : slot_of) {
-    const FrameCoefficients& c = predictor.frames()[slot];
-    crc = Add(c.rigid, crc);
-    for (const PlaneValues& plane : c.planes) crc = Add(plane, crc);
-  }
+  for (const std::size_t slot : slot_of) take(slots[slot], predictor.frames()[slot]);
   return Status::Ok();
 }
 
 }  // namespace
 
+std::uint32_t CoefficientsCrc32(const FrameCoefficients& coefficients, std::uint32_t crc) {
+  crc = Add(coefficients.rigid, crc);
+  for (const PlaneValues& plane : coefficients.planes) crc = Add(plane, crc);
+  return crc;
+}
+
 Status CoefficientsCrc32(std::span<const std::uint8_t> stream, std::uint32_t& crc) {
+  crc = 0;
+  return ReadCoefficients(stream,
+                          [&crc](const FrameSlot&, const FrameCoefficients& c) { crc = CoefficientsCrc32(c, crc); });
+}
+
+Status ReadCoefficients(std::span<const std::uint8_t> stream, const TakeFrame& take) {
   const Limits limits;
   PacketReader packets(limits);
   SequenceHeader header;
   PlaneLayouts layouts;
-  crc = 0;
   while (!stream.empty()) {
     std::optional<Packet> packet;
     SAC_RETURN_IF_ERROR(packets.Read(stream, packet));
     if (!packet) break;
     if (packet->type == PacketType::kHeader) SAC_RETURN_IF_ERROR(ParseSequenceHeader(packet->payload, limits, header));
     if (packet->type == PacketType::kIFrame) SAC_RETURN_IF_ERROR(ParseLayouts(packet->payload, header, layouts));
-    if (packet->type == PacketType::kGroup) SAC_RETURN_IF_ERROR(AddGroup(packet->payload, header, layouts, crc));
+    if (packet->type == PacketType::kGroup) SAC_RETURN_IF_ERROR(ReadGroup(packet->payload, header, layouts, take));
   }
-  return Status::Ok();
+  return packets.AtBoundary() ? Status::Ok() : Status::Corrupt("truncated");
 }
 
 }  // namespace sac
