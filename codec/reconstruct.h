@@ -6,8 +6,8 @@
 #include <vector>
 
 #include "codec/poisson_system.h"
-#include "codec/prediction.h"
 #include "codec/shape.h"
+#include "format/prediction.h"
 #include "format/sequence_header.h"
 
 namespace sac {

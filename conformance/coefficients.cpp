@@ -6,10 +6,9 @@
 
 #include "codec/decode/draco_mesh.h"
 #include "codec/decode/i_frame.h"
-#include "codec/prediction.h"
 #include "format/bytes.h"
 #include "format/crc32.h"
-#include "format/frame_syntax.h"
+#include "format/frame_coder.h"
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
 
@@ -43,17 +42,16 @@ Status ReadGroup(std::span<const std::uint8_t> payload, const SequenceHeader& he
   const std::uint32_t frames = reader.Varint(), pyramid = reader.Varint();
   if (!reader.ok()) return Status::Corrupt("malformed group");
   RangeDecoder range(payload.subspan(reader.position()));
-  FrameCoder<RangeDecoder> coder(layouts);
-  Predictor predictor(header, layouts);
+  FrameCoder<RangeDecoder> coder(header, layouts);
   std::vector<FrameSlot> slots = GroupStructure(frames, pyramid);
   std::vector<std::size_t> slot_of(frames);
   for (std::size_t i = 0; i < slots.size(); ++i) {
     FrameSyntax frame;
-    if (!coder.Code(range, slots[i], frame) || !predictor.Add(frame)) return Status::Corrupt("malformed frame");
+    if (!coder.Code(range, slots[i], frame)) return Status::Corrupt("malformed frame");
     slots[i] = frame.slot;
     slot_of[slots[i].display] = i;
   }
-  for (const std::size_t slot : slot_of) take(slots[slot], predictor.frames()[slot]);
+  for (const std::size_t slot : slot_of) take(slots[slot], coder.predictor().frames()[slot]);
   return Status::Ok();
 }
 

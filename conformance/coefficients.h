@@ -4,8 +4,8 @@
 #include <functional>
 #include <span>
 
-#include "codec/prediction.h"
 #include "format/group_structure.h"
+#include "format/prediction.h"
 #include "format/status.h"
 
 namespace sac {

@@ -10,6 +10,7 @@
 #include "codec/decode/i_frame.h"
 #include "codec/shape.h"
 #include "format/bytes.h"
+#include "format/frame_coder.h"
 #include "format/packet.h"
 
 namespace sac {
@@ -94,7 +95,7 @@ Bytes CodeGroup(const StreamParts& parts, std::uint32_t frames, std::uint32_t py
   payload.Varint(frames);
   payload.Varint(pyramid);
   RangeEncoder range;
-  FrameCoder<RangeEncoder> coder(parts.layouts);
+  FrameCoder<RangeEncoder> coder(parts.header, parts.layouts);
   std::uint32_t index = 0;
   for (const FrameSlot& slot : GroupStructure(frames, pyramid)) {
     FrameSyntax frame;

@@ -1,11 +1,10 @@
-#include "format/frame_syntax.h"
-
 #include <gtest/gtest.h>
 
 #include <algorithm>
 #include <optional>
 #include <random>
 
+#include "format/frame_coder.h"
 #include "format/plane_layout.h"
 
 namespace sac {
@@ -13,11 +12,16 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-PlaneLayouts Layouts(bool all_planes) {
+SequenceHeader Header(bool all_planes) {
   SequenceHeader header;
   header.vertices = 40;
+  header.level_growth = 77;
   header.detail_step = header.correction_step = all_planes ? 1.0f : 0.0f;
-  return LayOutPlanes(header, std::vector<std::uint32_t>{20, 7, 1}, std::vector<std::uint32_t>{16, 16, 8});
+  return header;
+}
+
+PlaneLayouts Layouts(bool all_planes) {
+  return LayOutPlanes(Header(all_planes), std::vector<std::uint32_t>{20, 7, 1}, std::vector<std::uint32_t>{16, 16, 8});
 }
 
 FrameSyntax Zero(const FrameSlot& slot, const PlaneLayouts& layouts) {
@@ -27,7 +31,8 @@ FrameSyntax Zero(const FrameSlot& slot, const PlaneLayouts& layouts) {
   return frame;
 }
 
-// Residuals of a size of their own per plane and frame: none, few, many, or up to the limits.
+// Residuals of a size of their own per plane and frame: none, few, many, or so great that a group's sums stay just
+// within the limits.
 FrameSyntax RandomFrame(const FrameSlot& slot, const PlaneLayouts& layouts, std::mt19937& random) {
   FrameSyntax frame = Zero(slot, layouts);
   const auto draw = [&](std::int32_t limit) {
@@ -39,15 +44,15 @@ FrameSyntax RandomFrame(const FrameSlot& slot, const PlaneLayouts& layouts, std:
       return static_cast<std::int32_t>(random() % (2 * static_cast<std::uint32_t>(size) + 1)) - size;
     };
   };
-  std::generate(frame.rigid.begin(), frame.rigid.end(), draw(kMaxCoefficient));
-  for (PlaneValues& plane : frame.planes) std::generate(plane.begin(), plane.end(), draw(kMaxResidual));
+  std::generate(frame.rigid.begin(), frame.rigid.end(), draw(kMaxCoefficient / 32));
+  for (PlaneValues& plane : frame.planes) std::generate(plane.begin(), plane.end(), draw(kMaxResidual / 64));
   return frame;
 }
 
 std::optional<Bytes> Write(const std::vector<FrameSlot>& structure, std::vector<FrameSyntax> frames,
                            const PlaneLayouts& layouts) {
   RangeEncoder range;
-  FrameCoder<RangeEncoder> coder(layouts);
+  FrameCoder<RangeEncoder> coder(Header(layouts[kDetail].size() > 0), layouts);
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (!coder.Code(range, structure[i], frames[i])) return std::nullopt;
   }
@@ -63,7 +68,7 @@ struct Read {
 Read Parse(const Bytes& code, const std::vector<FrameSlot>& structure, const PlaneLayouts& layouts) {
   Read read;
   RangeDecoder range(code);
-  FrameCoder<RangeDecoder> coder(layouts);
+  FrameCoder<RangeDecoder> coder(Header(layouts[kDetail].size() > 0), layouts);
   for (const FrameSlot& slot : structure) {
     FrameSyntax& frame = read.frames.emplace_back();
     if (!(read.ok = coder.Code(range, slot, frame))) break;
@@ -162,7 +167,7 @@ TEST(FrameSyntax, BitsAddUp) {
   const auto structure = GroupStructure(10, 4);
   std::mt19937 random(3);
   RangeEncoder range;
-  FrameCoder<RangeEncoder> coder(layouts);
+  FrameCoder<RangeEncoder> coder(Header(layouts[kDetail].size() > 0), layouts);
   FrameBits bits;
   for (const FrameSlot& slot : structure) {
     FrameSyntax frame = RandomFrame(slot, layouts, random);

@@ -1,4 +1,4 @@
-#include "codec/prediction.h"
+#include "format/prediction.h"
 
 #include <gtest/gtest.h>
 

@@ -21,18 +21,18 @@
 #include "codec/harmonics.h"
 #include "codec/laplacian.h"
 #include "codec/patches.h"
-#include "codec/prediction.h"
 #include "codec/radial_functions.h"
 #include "conformance/spec_examples.h"
 #include "conformance/text_decoder.h"
 #include "format/bytes.h"
 #include "format/crc32.h"
-#include "format/frame_syntax.h"
+#include "format/frame_coder.h"
 #include "format/group_structure.h"
 #include "format/harmonic_order.h"
 #include "format/integer_coder.h"
 #include "format/packet.h"
 #include "format/plane_layout.h"
+#include "format/prediction.h"
 #include "format/range_coder.h"
 
 namespace sac {
@@ -261,7 +261,7 @@ TEST(Spec, TextReadsFrames) {
     const PlaneLayouts layouts = LayOutPlanes(header, harmonics, patches);
     const std::vector<FrameSlot> structure = GroupStructure(1 + random() % 20, 1 + random() % 9);
     RangeEncoder coder;
-    FrameCoder<RangeEncoder> writer(layouts);
+    FrameCoder<RangeEncoder> writer(header, layouts);
     std::vector<FrameSyntax> frames;
     for (std::uint32_t i = 0; i < structure.size(); ++i) {
       FrameSyntax& frame = frames.emplace_back();

@@ -7,11 +7,10 @@
 #include <utility>
 
 #include "codec/decode/i_frame.h"
-#include "codec/prediction.h"
 #include "codec/reconstruct.h"
 #include "codec/shape.h"
 #include "format/bytes.h"
-#include "format/frame_syntax.h"
+#include "format/frame_coder.h"
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
 
@@ -148,8 +147,7 @@ Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload) {
   if (previous && pyramid != 1) return Status::Corrupt("group: B-frames against the previous frame");
 
   RangeDecoder range(payload.subspan(reader.position()));
-  FrameCoder<RangeDecoder> coder(shape_.layouts);
-  Predictor predictor(*header, shape_.layouts);
+  FrameCoder<RangeDecoder> coder(*header, shape_.layouts);
   const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
   group_.assign(frames, FrameCoefficients());
   group_intra_.assign(frames, false);
@@ -161,11 +159,10 @@ Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload) {
     if (previous && !frame.intra() && frame.slot.references != slot.references) {
       return Status::Corrupt(where() + "not predicted from the frame before");
     }
-    if (!predictor.Add(frame)) return Status::Corrupt(where() + "a coefficient out of range");
     group_intra_[slot.display] = frame.intra();
   }
   if (!range.AtEnd()) return Status::Corrupt("group: bytes after the last frame");
-  std::vector<FrameCoefficients> coded = predictor.TakeFrames();
+  std::vector<FrameCoefficients> coded = coder.TakeFrames();
   for (std::size_t i = 0; i < structure.size(); ++i) group_[structure[i].display] = std::move(coded[i]);
   if (!reconstructor_->StartGroup()) return Status::Corrupt("the first frame's shape is singular");
   next_in_group_ = 0;

@@ -11,7 +11,7 @@
 #include "codec/encode/i_frame_encoder.h"
 #include "codec/encode/quality.h"
 #include "codec/shape.h"
-#include "format/frame_syntax.h"
+#include "format/frame_coder.h"
 #include "format/group_structure.h"
 #include "format/packet.h"
 
@@ -265,7 +265,7 @@ Status Encoder::Impl::FlushGroup() {
   const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
   std::vector<FrameSyntax> coded;
   RangeEncoder range;
-  FrameCoder<RangeEncoder> coder(shape_.layouts);
+  FrameCoder<RangeEncoder> coder(header, shape_.layouts);
   FrameBits bits;
   bool good = encoder_->Encode(group_, structure, coded);
   for (std::size_t i = 0; good && i < coded.size(); ++i) good = coder.Code(range, structure[i], coded[i], &bits);

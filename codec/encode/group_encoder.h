@@ -7,10 +7,10 @@
 
 #include "codec/encode/projection.h"
 #include "codec/encode/triangle_fields.h"
-#include "codec/prediction.h"
 #include "codec/reconstruct.h"
 #include "codec/shape.h"
 #include "format/frame_syntax.h"
+#include "format/prediction.h"
 #include "format/sequence_header.h"
 
 namespace sac {

@@ -1,4 +1,4 @@
-#include "format/frame_syntax.h"
+#include "format/frame_coder.h"
 
 #include <algorithm>
 #include <cstddef>
@@ -22,7 +22,8 @@ std::size_t ActivityClass(std::int64_t s) {
 }  // namespace
 
 template <class Coder>
-FrameCoder<Coder>::FrameCoder(const PlaneLayouts& layouts) : layouts_(layouts), zeros_(EmptyPlanes(layouts)) {
+FrameCoder<Coder>::FrameCoder(const SequenceHeader& header, const PlaneLayouts& layouts)
+    : layouts_(layouts), predictor_(header, layouts), zeros_(EmptyPlanes(layouts)) {
   for (LevelModels& level : models_) {
     for (std::size_t p = 0; p < kPlanes; ++p) {
       if (layouts[p].size() > 0) level.planes[p].coefficients.resize(kActivities * kBands);
@@ -174,7 +175,7 @@ bool FrameCoder<Coder>::Code(Coder& coder, const FrameSlot& slot, FrameSyntax& f
     account(parts.planes[p]);
   }
   coded_.push_back(frame);
-  return coder.ok();
+  return coder.ok() && predictor_.Add(frame);
 }
 
 template class FrameCoder<RangeEncoder>;

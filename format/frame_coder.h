@@ -1,0 +1,75 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "format/frame_syntax.h"
+#include "format/integer_coder.h"
+#include "format/plane_layout.h"
+#include "format/prediction.h"
+#include "format/range_coder.h"
+#include "format/sequence_header.h"
+
+namespace sac {
+
+// Bits of a group by what they say.
+struct FrameBits {
+  double side = 0;
+  std::array<double, kPlanes> planes = {};
+};
+
+// Codes the frames of one group in coding order; holds the adaptive models and the frames that contexts look at.
+// Encoder and decoder instantiate the same body.
+template <class Coder>
+class FrameCoder {
+ public:
+  FrameCoder(const SequenceHeader& header, const PlaneLayouts& layouts);
+
+  // Writes or reads `frame`, the one at `slot` of the group's structure. False when a residual or coefficient is out of
+  // range or the code ran past its end. `bits` accounts for what an encoder writes.
+  bool Code(Coder& coder, const FrameSlot& slot, FrameSyntax& frame, FrameBits* bits = nullptr);
+
+  // The coefficients of the frames coded so far.
+  const Predictor& predictor() const { return predictor_; }
+  std::vector<FrameCoefficients> TakeFrames() { return predictor_.TakeFrames(); }
+
+ private:
+  struct CoefficientModels {
+    BitModel nonzero;
+    std::array<BitModel, 14> unary;
+    std::array<BitModel, 20> escape;
+  };
+  struct PlaneModels {
+    BitModel empty;
+    std::vector<CoefficientModels> coefficients;  // by context
+  };
+  static constexpr std::size_t kLevels = 3;  // of a pyramid that have models of their own
+  struct LevelModels {
+    BitModel moves;
+    std::array<SignedModels, 2> rigid;
+    std::array<PlaneModels, kPlanes> planes;
+  };
+
+  bool CodeReferences(Coder& coder, const FrameSlot& slot, FrameSyntax& frame);
+  bool CodeRigid(Coder& coder, LevelModels& models, std::array<std::int32_t, 6>& rigid);
+  bool CodeCoefficient(Coder& coder, CoefficientModels& models, std::int32_t& value);
+  // Residuals of a plane of the frame's first (0) or second (1) reference, or the only one twice.
+  std::span<const std::int32_t> ReferenceResiduals(const FrameSyntax& frame, std::size_t plane, std::size_t i) const;
+  bool CodePlane(Coder& coder, PlaneModels& models, std::size_t plane, FrameSyntax& frame);
+
+  PlaneLayouts layouts_;
+  Predictor predictor_;
+  std::vector<FrameSyntax> coded_;
+  FramePlanes zeros_;
+  BitModel explicit_model_;
+  std::array<BitModel, 2> reference_count_models_;
+  UnsignedModels reference_models_;
+  std::array<LevelModels, kLevels> models_;
+};
+
+extern template class FrameCoder<RangeEncoder>;
+extern template class FrameCoder<RangeDecoder>;
+
+}  // namespace sac
