@@ -132,7 +132,9 @@ double RmsRadius(const Positions& positions) {
       squares += d * d;
     }
   }
-  return std::sqrt(squares / n);
+  if (squares > 0) return std::sqrt(squares / n);
+  // A point has no size: any that is not tiny beside its coordinates will do.
+  return std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / n;
 }
 
 // Harmonics for each component in proportion to its area, which by Weyl's law is an equal bound on eigenvalues; one at
