@@ -376,7 +376,7 @@ class TextStream {
  private:
   void ReadHeader(ByteReader& in) {
     EXPECT_EQ(in.U8(), 0);
-    EXPECT_EQ(in.U8(), 1);
+    EXPECT_EQ(in.U8(), 2);
     EXPECT_EQ(in.U8(), 0);  // reference_shape
     in.U8();                // position_bits
     growth_ = in.U8();
@@ -545,13 +545,28 @@ class TextStream {
         if (frame.references.size() == 1) return a;
         return (a + value(coefficients.at(frame.references[1])) + 1) >> 1;
       };
+      const auto bend = [&](auto&& value) -> std::int64_t {  // of a frame with two references
+        const std::uint32_t a = frame.references[0], b = frame.references[1];
+        const std::int64_t d_a = structure[a].display, d_b = structure[b].display;
+        std::int64_t sum = 0;
+        for (std::size_t o = 0; o < coefficients.size(); ++o) {
+          const std::int64_t at = structure[o].display, x_a = value(coefficients[a]), x_b = value(coefficients[b]);
+          if (at == 2 * d_a - d_b) sum += 2 * x_a - x_b - value(coefficients[o]);
+          if (at == 2 * d_b - d_a) sum += 2 * x_b - x_a - value(coefficients[o]);
+        }
+        return sum;
+      };
       for (std::size_t i = 0; i < 6; ++i) frame.rigid[i] += predict([&](const TextFrame& f) { return f.rigid[i]; });
       for (std::size_t p = 0; p < 4; ++p) {
         for (std::size_t i = 0; i < frame.planes[p].size(); ++i) {
           for (std::size_t j = 0; j < frame.planes[p][i].size(); ++j) {
             std::int32_t& value = frame.planes[p][i][j];
-            const std::int64_t prediction =
-                p == 3 ? 0 : predict([&](const TextFrame& f) { return std::int64_t{f.planes[p][i][j]}; });
+            const auto at = [&](const TextFrame& f) { return std::int64_t{f.planes[p][i][j]}; };
+            std::int64_t prediction = p == 3 ? 0 : predict(at);
+            if (p < 2 && slot.level >= 3 && frame.references.size() == 2) {
+              const std::int64_t sum = at(coefficients[frame.references[0]]) + at(coefficients[frame.references[1]]);
+              prediction = (8 * sum + bend(at) + 8) >> 4;
+            }
             value = static_cast<std::int32_t>(prediction + value * (p == 3 ? 16 : step));
           }
         }

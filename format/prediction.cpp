@@ -7,6 +7,9 @@
 namespace sac {
 namespace {
 
+// From this level of a pyramid on, frames are near enough in time to lie on a smooth curve.
+constexpr std::uint32_t kBendingLevel = 3;
+
 template <class Values>
 bool AddInto(Values& sum, const Values& residual, std::int64_t step) {
   bool good = true;
@@ -42,27 +45,56 @@ bool Predictor::Predicts(std::size_t plane) const {
   return plane != kCorrection && header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kKey);
 }
 
-FrameCoefficients Predictor::Predict(const std::vector<std::uint32_t>& references) const {
-  if (references.empty()) return {{}, zeros_};
-  const FrameCoefficients& first = frames_[references[0]];
-  const FrameCoefficients& second = frames_[references.back()];
-  FrameCoefficients prediction{first.rigid, zeros_};
-  if (references.size() == 2) Mean(prediction.rigid, second.rigid);
+const FrameCoefficients* Predictor::FrameAt(std::int64_t display) const {
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    if (displays_[i] == display) return &frames_[i];
+  }
+  return nullptr;
+}
+
+ReferenceFrames Predictor::References(const FrameSlot& slot) const {
+  if (slot.references.empty()) return {};
+  const std::uint32_t a = slot.references[0], b = slot.references.back();
+  ReferenceFrames frames{&frames_[a], &frames_[b], nullptr, nullptr};
+  if (slot.references.size() == 2) {
+    const std::int64_t from = displays_[a], to = displays_[b];
+    frames.before = FrameAt(2 * from - to);
+    frames.after = FrameAt(2 * to - from);
+  }
+  return frames;
+}
+
+FrameCoefficients Predictor::Predict(const FrameSlot& slot) const {
+  if (slot.references.empty()) return {{}, zeros_};
+  const ReferenceFrames frames = References(slot);
+  FrameCoefficients prediction{frames.first->rigid, zeros_};
+  if (slot.references.size() == 2) Mean(prediction.rigid, frames.second->rigid);
   for (std::size_t p = 0; p < kPlanes; ++p) {
     if (!Predicts(p)) continue;
-    prediction.planes[p] = first.planes[p];
-    if (references.size() == 2) Mean(prediction.planes[p], second.planes[p]);
+    PlaneValues& values = prediction.planes[p];
+    values = frames.first->planes[p];
+    if (slot.references.size() < 2) continue;
+    if (slot.level >= kBendingLevel && (p == kMotion || p == kDisplacement)) {
+      const PlaneValues& second = frames.second->planes[p];
+      for (std::size_t i = 0; i < values.size(); ++i) {
+        const std::int64_t sum = 8 * (std::int64_t{values[i]} + second[i]) + frames.Bend(p, i);
+        values[i] = static_cast<std::int32_t>((sum + 8) >> 4);
+      }
+    } else {
+      Mean(values, frames.second->planes[p]);
+    }
   }
   return prediction;
 }
 
 bool Predictor::Add(const FrameSyntax& frame) {
-  FrameCoefficients sum = Predict(frame.slot.references);
+  FrameCoefficients sum = Predict(frame.slot);
   if (!AddInto(sum.rigid, frame.rigid, 1)) return false;
   for (std::size_t p = 0; p < kPlanes; ++p) {
     if (!AddInto(sum.planes[p], frame.planes[p], LevelStep(header_, p, frame.slot.level))) return false;
   }
   frames_.push_back(std::move(sum));
+  displays_.push_back(frame.slot.display);
   return true;
 }
 

@@ -24,14 +24,31 @@ struct FrameCoefficients {
   FramePlanes planes;                      // in sixteenths of a step
 };
 
+// The frames that one is predicted from, none, one twice or two, and those as far beyond them in time, if they are
+// coded (spec.md 6.3).
+struct ReferenceFrames {
+  const FrameCoefficients* first = nullptr;
+  const FrameCoefficients* second = nullptr;
+  const FrameCoefficients* before = nullptr;  // as far from `first` as the other end, on the other side
+  const FrameCoefficients* after = nullptr;   // likewise from `second`
+
+  // Where the course of a plane's coefficient i bends to between two references, in sixteenths of the coefficient;
+  // each frame beyond adds half of a parabola's.
+  std::int64_t Bend(std::size_t plane, std::size_t i) const {
+    const std::int64_t a = first->planes[plane][i], b = second->planes[plane][i];
+    return (before ? 2 * a - b - before->planes[plane][i] : 0) + (after ? 2 * b - a - after->planes[plane][i] : 0);
+  }
+};
+
 // Predicts the frames of one group from those coded before (spec.md 6.3). Integers alone: encoder and decoder cannot
 // drift apart.
 class Predictor {
  public:
   Predictor(const SequenceHeader& header, const PlaneLayouts& layouts);
 
-  // From zero, one or the mean of two of the frames added, by their indices in coding order.
-  FrameCoefficients Predict(const std::vector<std::uint32_t>& references) const;
+  // From zero, one or two of the frames added, whose indices in coding order the slot has.
+  FrameCoefficients Predict(const FrameSlot& slot) const;
+  ReferenceFrames References(const FrameSlot& slot) const;
   // Appends prediction plus residual, the next frame in coding order. False when a sum leaves the range of spec.md 6.3.
   bool Add(const FrameSyntax& frame);
 
@@ -41,10 +58,13 @@ class Predictor {
  private:
   // Whether a plane is predicted at all.
   bool Predicts(std::size_t plane) const;
+  // The frame shown at a time within the group, if it is coded.
+  const FrameCoefficients* FrameAt(std::int64_t display) const;
 
   SequenceHeader header_;
   FramePlanes zeros_;
   std::vector<FrameCoefficients> frames_;
+  std::vector<std::uint32_t> displays_;  // of frames_
 };
 
 }  // namespace sac

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <vector>
 
 namespace sac {
@@ -20,9 +21,10 @@ SequenceHeader Header(ReferenceShape reference_shape = ReferenceShape::kKey) {
 PlaneLayouts Layouts() { return LayOutPlanes(Header(), std::vector<std::uint32_t>{2}, std::vector<std::uint32_t>{2}); }
 
 // A frame whose residuals are all `residual`.
-FrameSyntax Frame(const References& references, std::int32_t residual, std::uint32_t level = 0) {
+FrameSyntax Frame(const References& references, std::int32_t residual, std::uint32_t level = 0,
+                  std::uint32_t display = 0) {
   FrameSyntax frame;
-  frame.slot = {0, level, references};
+  frame.slot = {display, level, references};
   frame.rigid.fill(residual);
   frame.planes = EmptyPlanes(Layouts());
   for (PlaneValues& plane : frame.planes) plane.assign(plane.size(), residual);
@@ -71,11 +73,30 @@ TEST(Predictor, TakesTheMeanOfTwo) {
   Predictor predictor(Header(), Layouts());
   ASSERT_TRUE(predictor.Add(Frame({}, 4)));
   ASSERT_TRUE(predictor.Add(Frame({}, -1)));
-  ExpectAll(predictor.Predict({0, 1}), 2, 24, 0);  // 1.5 goes up
+  ExpectAll(predictor.Predict({0, 0, {0, 1}}), 2, 24, 0);  // 1.5 goes up
   ASSERT_TRUE(predictor.Add(Frame({}, -2)));
-  ExpectAll(predictor.Predict({1, 2}), -1, -24, 0);  // so does -1.5
+  ExpectAll(predictor.Predict({0, 0, {1, 2}}), -1, -24, 0);  // so does -1.5
   ASSERT_TRUE(predictor.Add(Frame({0, 1}, 1)));
   ExpectAll(predictor.frames()[3], 3, 40, 16);
+}
+
+TEST(Predictor, BendsAtFineLevels) {
+  // 4, 1, x, 0, 2 at times 0, 2, 3, 4, 6, in steps.
+  Predictor predictor(Header(), Layouts());
+  for (const auto& [display, value] : {std::array{0, 4}, {2, 1}, {4, 0}, {6, 2}}) {
+    ASSERT_TRUE(predictor.Add(Frame({}, value, 0, static_cast<std::uint32_t>(display))));
+  }
+  const auto expect = [&](const FrameSlot& slot, std::int32_t planes, std::int32_t detail) {
+    const FrameCoefficients prediction = predictor.Predict(slot);
+    for (const Plane p : {kMotion, kDisplacement}) EXPECT_EQ(prediction.planes[p][1], planes);
+    EXPECT_EQ(prediction.planes[kDetail][1], detail);
+  };
+  expect({3, 2, {1, 2}}, 8, 8);
+  expect({3, 3, {1, 2}}, 8 - 2 - 3, 8);  // -(4 - 2 * 1 + 0) - (1 - 2 * 0 + 2), in steps and sixteenths
+  expect({1, 3, {0, 1}}, 40 - 2, 40);    // the frame at -2 is not there; 2 * 1 - 4 - 0 from the one at 4
+  expect({3, 3, {2, 1}}, 8 - 2 - 3, 8);
+  expect({3, 3, {2}}, 0, 0);
+  expect({3, 3, {1, 1}}, 16, 16);
 }
 
 TEST(Predictor, FinerLevelsCountInTheirOwnSteps) {
@@ -90,7 +111,7 @@ TEST(Predictor, FinerLevelsCountInTheirOwnSteps) {
 TEST(Predictor, AgainstThePreviousFrameOnlyTheRigidMotionIsPredicted) {
   Predictor predictor(Header(ReferenceShape::kPrevious), Layouts());
   ASSERT_TRUE(predictor.Add(Frame({}, 5)));
-  ExpectAll(predictor.Predict({0}), 5, 0, 0);
+  ExpectAll(predictor.Predict({0, 0, {0}}), 5, 0, 0);
   ASSERT_TRUE(predictor.Add(Frame({0}, -2)));
   ExpectAll(predictor.frames()[1], 3, -32, -32);
 }

@@ -132,7 +132,7 @@ bool GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::
       const PositionMatrix aligned = reconstructor_.RemoveRigid(positions, rigid[slot.display]);
       if (!UsesKeyReference()) motion_targets[slot.display] = MeasureMotion(aligned);
       ChoosePlanes(aligned, motion_targets[slot.display], predictor, frame);
-      const FrameCoefficients prediction = predictor.Predict(frame.slot.references);
+      const FrameCoefficients prediction = predictor.Predict(frame.slot);
       for (std::size_t i = 0; i < 6; ++i) frame.rigid[i] = rigid[slot.display][i] - prediction.rigid[i];
     }
     if (IsSaturated(frame.planes) || !predictor.Add(frame)) return false;
@@ -164,7 +164,7 @@ bool GroupEncoder::RepeatFrame(const std::vector<PositionMatrix>& frames, const 
     const FrameCoefficients& wanted = predictor.frames()[i];
     if (!ExactResidual(wanted.planes[kCorrection], frame.planes[kCorrection])) return false;
     // The structure's own references will do if they predict the same.
-    FrameCoefficients prediction = predictor.Predict(frame.slot.references);
+    FrameCoefficients prediction = predictor.Predict(frame.slot);
     prediction.planes[kCorrection] = wanted.planes[kCorrection];
     if (prediction.rigid != wanted.rigid || prediction.planes != wanted.planes) frame.slot.references = {i};
     return true;
@@ -183,12 +183,12 @@ void GroupEncoder::Quantize(Plane plane, const Eigen::MatrixXd& target, FrameCoe
 
 void GroupEncoder::ChoosePlanes(const PositionMatrix& aligned, const Eigen::MatrixXd& motion_target,
                                 const Predictor& predictor, FrameSyntax& frame) {
-  FrameCoefficients coefficients = predictor.Predict(frame.slot.references);
+  FrameCoefficients coefficients = predictor.Predict(frame.slot);
   Quantize(kMotion, motion_target, coefficients, frame);
   if (UsesKeyReference() && !frame.intra()) {  // a cut costs less from zero
     FrameSyntax intra = frame;
     intra.slot.references.clear();
-    FrameCoefficients from_zero = predictor.Predict({});
+    FrameCoefficients from_zero = predictor.Predict(intra.slot);
     Quantize(kMotion, motion_target, from_zero, intra);
     if (EstimatedBits(intra.planes[kMotion]) < EstimatedBits(frame.planes[kMotion])) {
       frame = std::move(intra);
