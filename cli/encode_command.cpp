@@ -171,8 +171,9 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
             "quantizer step of local detail, as a fraction of the RMS radius; 0 for none [from the quality]");
   AddNumber(app, "--max-error", encoder.max_error, kLeastError, kLargestError,
             "no vertex of any frame is farther off than this, model units [no bound]");
-  AddNumber(app, "--position-bits", encoder.position_bits, 1, 24,
-            "bits of a coordinate of the first frame [from the quality]");
+  AddNumber(
+      app, "--position-bits", encoder.position_bits, 1, 24,
+      "log2 of the first frame's extent in steps, at edges of median length; may be a fraction [from the quality]");
   app.add_flag("--keep-order", encoder.keep_order, "put the order of the vertices in the stream");
   app.add_option("--order-map", o.settings.order_map,
                  "write the order of the vertices to a file, for decode --order-map")

@@ -6,6 +6,8 @@
 #include <cstdlib>
 #include <limits>
 
+#include "codec/decode/draco_mesh.h"
+#include "codec/encode/position_search.h"
 #include "format/bytes.h"
 #include "format/packet.h"
 
@@ -63,6 +65,11 @@ StreamParts Octahedron() {
   h.motion_step = h.displacement_step = h.rotation_step = h.translation_step = 0.01f;
   parts.i_frame.mesh = DracoOctahedron([](draco::Mesh&) {});
   parts.i_frame.harmonics = {4};
+  DracoMesh draco;
+  if (!DecodeDraco(parts.i_frame.mesh, h, draco).ok()) std::abort();
+  const std::vector<std::array<double, 3>> cells = {{0, 8, 8},  {8, 0, 8},  {8, 8, 1},
+                                                    {15, 8, 8}, {8, 14, 8}, {8, 8, 15}};
+  parts.i_frame.positions = EncodePositions(cells, PositionGraph(6, draco.triangles), {16, 0}, h.position_bits);
   Derive(parts);
   parts.frames = 1;
   parts.groups = {CodeGroup(parts, 1, 1, [](std::uint32_t, FrameSyntax& frame) { frame.planes[kMotion][9] = 5; })};
@@ -294,7 +301,7 @@ void AddDraco(Collection& c) {
   c.ChangeDraco("R33", "truncated", [](StreamParts& p) { p.i_frame.mesh.resize(p.i_frame.mesh.size() - 4); });
   c.ChangeDraco("R33", "trailing", [](StreamParts& p) { p.i_frame.mesh.push_back(0); });
   mesh("R34", "float_positions", DracoOctahedron(plain, false));
-  c.ChangeDraco("R35", "above", [](StreamParts& p) { p.header.position_bits = 3; });
+  c.ChangeDraco("R35", "off_the_grid", [](StreamParts& p) { p.i_frame.position_step = 16 * 9; });
   mesh("R36", "generic", DracoOctahedron([](draco::Mesh& m) {
          AddAttribute(m, Attribute::GENERIC, draco::DT_UINT32, std::vector<std::array<std::uint32_t, 1>>(6, {7}));
        }));
@@ -308,7 +315,9 @@ void AddDraco(Collection& c) {
          AddAttribute(m, Attribute::COLOR, draco::DT_UINT8, std::vector<std::array<std::uint8_t, 3>>(6, {1, 2, 3}));
        }));
   c.ChangeDraco("R37", "point", [](StreamParts& p) { p.i_frame.welds = {{6, 0}}; });
-  c.ChangeDraco("R38", "positions", [](StreamParts& p) { p.i_frame.welds = {{5, 0}}; });
+  c.ChangeDraco("R38", "positions",
+                [](StreamParts& p) { p.i_frame.positions.insert(p.i_frame.positions.end(), 5, 1); });
+  c.ChangeDraco("R38", "short", [](StreamParts& p) { p.i_frame.positions.clear(); });
   const auto loose = [&](const char* name, const Bytes& bytes) {
     c.ChangeDraco("R39", name, [&](StreamParts& p) {
       p.i_frame.mesh = bytes;

@@ -376,7 +376,7 @@ class TextStream {
  private:
   void ReadHeader(ByteReader& in) {
     EXPECT_EQ(in.U8(), 0);
-    EXPECT_EQ(in.U8(), 2);
+    EXPECT_EQ(in.U8(), 3);
     EXPECT_EQ(in.U8(), 0);  // reference_shape
     in.U8();                // position_bits
     growth_ = in.U8();

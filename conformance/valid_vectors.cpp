@@ -217,11 +217,11 @@ std::vector<ValidVector> ValidVectors() {
   encode("one_vertex", "one vertex", Wave(point, 3), s, 60);
   EncoderSettings coarse = s;
   coarse.position_bits = 1;
-  encode("coarse", "a grid of 2 places: vertices at one position, degenerate areas", Synth(SynthKind::kSphere, 60, 3),
-         coarse);
+  encode("coarse", "steps of half the extent: vertices at one position, degenerate areas",
+         Synth(SynthKind::kSphere, 60, 3), coarse);
   EncoderSettings fine = s;
   fine.position_bits = 24;
-  encode("fine", "a grid of 2^24 places", Synth(SynthKind::kSphere, 60, 3), fine);
+  encode("fine", "a grid of 2^24 places, steps of one", Synth(SynthKind::kSphere, 60, 3), fine);
 
   vectors.push_back({"perverse",
                      "explicit references of all kinds, all magnitudes, level growth 2, levels above 2, a pyramid much "

@@ -4,20 +4,12 @@
 #include <cstddef>
 #include <cstdlib>
 
+#include "format/activity.h"
+
 namespace sac {
 namespace {
 
-constexpr std::size_t kActivities = 16;
 constexpr std::size_t kBands = 7;
-
-// spec.md 7.4: the class of an activity of s / 24 is floor(2 log2(1 + 3 s / 24)), at most 15; here by its thresholds,
-// ceil(8 (2^(c / 2) - 1)) for class c.
-constexpr std::array<std::int64_t, kActivities - 1> kThresholds = {4,   8,   15,  24,  38,  56,   83,  120,
-                                                                   174, 248, 355, 504, 717, 1016, 1441};
-
-std::size_t ActivityClass(std::int64_t s) {
-  return static_cast<std::size_t>(std::upper_bound(kThresholds.begin(), kThresholds.end(), s) - kThresholds.begin());
-}
 
 }  // namespace
 

@@ -148,6 +148,12 @@ std::vector<std::uint8_t> WriteIFrame(const IFrameSyntax& syntax, const Sequence
   ByteWriter out;
   out.Varint(static_cast<std::uint32_t>(syntax.mesh.size()));
   out.Bytes(syntax.mesh);
+  if (!syntax.mesh.empty()) {
+    out.Varint(syntax.position_step);
+    out.Varint(syntax.position_slope);
+    out.Varint(static_cast<std::uint32_t>(syntax.positions.size()));
+    out.Bytes(syntax.positions);
+  }
   RangeEncoder coder;
   IFrameSyntax copy = syntax;  // the shared body takes its elements by reference
   CodeSide(coder, header, copy);
@@ -161,6 +167,13 @@ Status ParseIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& 
   const auto mesh = reader.Bytes(reader.Varint());
   if (!reader.ok()) return Status::Corrupt("I-frame: truncated mesh");
   syntax.mesh.assign(mesh.begin(), mesh.end());
+  if (!mesh.empty()) {
+    syntax.position_step = reader.Varint();
+    syntax.position_slope = reader.Varint();
+    const auto positions = reader.Bytes(reader.Varint());
+    if (!reader.ok()) return Status::Corrupt("I-frame: truncated positions");
+    syntax.positions.assign(positions.begin(), positions.end());
+  }
   RangeDecoder coder(payload.subspan(reader.position()));
   if (const char* element = CodeSide(coder, header, syntax)) {
     return Status::Corrupt(std::string("I-frame: malformed ") + element);

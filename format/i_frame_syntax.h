@@ -28,6 +28,10 @@ struct LooseVertex {
 // the harmonic basis.
 struct IFrameSyntax {
   std::vector<std::uint8_t> mesh;  // a Draco stream; empty when no triangle is left to it
+  // How finely the positions of Draco's mesh are coded, and their range code (spec.md 5.5).
+  std::uint32_t position_step = 16;  // 1/16 of a grid cell
+  std::uint32_t position_slope = 0;  // 1/4096 of the length of edges
+  std::vector<std::uint8_t> positions;
   std::vector<Weld> welds;
   bool has_normals = false;
   bool has_colors = false;

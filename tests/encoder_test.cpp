@@ -182,7 +182,7 @@ TEST(Encoder, HeaderSaysWhatWasAskedFor) {
   ASSERT_NE(decoder.header(), nullptr);
   EXPECT_EQ(decoder.header()->frame_rate_numerator, 30000u);
   EXPECT_EQ(decoder.header()->frame_rate_denominator, 1001u);
-  EXPECT_EQ(decoder.header()->position_bits, 13);
+  EXPECT_EQ(decoder.header()->position_bits, 13 + 5);  // the grid is finer than the steps
   EXPECT_EQ(decoder.header()->motion_step, 0.125f);
   EXPECT_EQ(decoder.header()->vertices, 80u);
 }

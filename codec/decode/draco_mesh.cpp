@@ -38,22 +38,12 @@ std::vector<Value> Values(const draco::PointAttribute& attribute, std::size_t co
   return values;
 }
 
-Status Extract(const draco::Mesh& in, const SequenceHeader& header, DracoMesh& out) {
+Status Extract(const draco::Mesh& in, DracoMesh& out) {
   const draco::PointAttribute* position = in.GetNamedAttribute(draco::GeometryAttribute::POSITION);
   if (!position || position->data_type() != draco::DT_INT32 || position->num_components() != 3) {
     return Status::Corrupt("I-frame: the Draco mesh has no integer positions");
   }
-  const std::size_t entries = position->size();
-  out.entries.resize(entries);
-  const std::int32_t end = std::int32_t{1} << header.position_bits;
-  for (std::uint32_t i = 0; i < entries; ++i) {
-    std::array<std::int32_t, 3> p{};
-    position->GetValue(draco::AttributeValueIndex(i), p.data());
-    for (std::size_t a = 0; a < 3; ++a) {
-      if (p[a] < 0 || p[a] >= end) return Status::Corrupt("I-frame: a position outside the grid");
-      out.entries[i][a] = static_cast<std::uint32_t>(p[a]);
-    }
-  }
+  out.entries = static_cast<std::uint32_t>(position->size());
   const auto corners = [&](const draco::PointAttribute& attribute, std::vector<Triangle>& triangles) {
     triangles.resize(in.num_faces());
     for (std::uint32_t j = 0; j < in.num_faces(); ++j) {
@@ -75,7 +65,7 @@ Status Extract(const draco::Mesh& in, const SequenceHeader& header, DracoMesh& o
   }
   // Attributes of vertices: whichever corner comes last decides; an encoder gives all the same.
   const auto per_entry = [&]<class Value>(const draco::PointAttribute& attribute, std::vector<Value>& values) {
-    values.resize(entries);
+    values.resize(out.entries);
     for (std::uint32_t j = 0; j < in.num_faces(); ++j) {
       for (std::size_t k = 0; k < 3; ++k) {
         const draco::AttributeValueIndex index = attribute.mapped_index(in.face(draco::FaceIndex(j))[k]);
@@ -116,7 +106,7 @@ Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& he
     auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
     if (!decoded.ok()) return Status::Corrupt("I-frame: Draco: " + decoded.status().error_msg_string());
     if (buffer.remaining_size() != 0) return Status::Corrupt("I-frame: bytes after the Draco mesh");
-    return Extract(*decoded.value(), header, mesh);
+    return Extract(*decoded.value(), mesh);
   } catch (const std::exception& e) {
     return Status::Corrupt(std::string("I-frame: Draco: ") + e.what());
   }

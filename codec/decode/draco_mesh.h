@@ -12,10 +12,10 @@
 
 namespace sac {
 
-// A mesh as Draco holds it (spec.md 5.1): entries are the values of its position attribute. Draco splits vertices that
-// are not manifold into several entries and drops degenerate triangles.
+// A mesh as Draco holds it (spec.md 5.1): entries are the values of its position attribute, which itself says nothing.
+// Draco splits vertices that are not manifold into several entries and drops degenerate triangles.
 struct DracoMesh {
-  std::vector<GridPosition> entries;
+  std::uint32_t entries = 0;
   std::vector<Triangle> triangles;  // of entries
   std::vector<std::array<float, 2>> uvs;
   std::vector<Triangle> uv_triangles;               // of uvs; empty without texture coordinates

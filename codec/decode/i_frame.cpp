@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "codec/position_coder.h"
+
 namespace sac {
 namespace {
 
@@ -18,15 +20,13 @@ std::vector<Value> Scatter(const std::vector<Value>& values, std::span<const std
 
 Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco, DecodedIFrame& out) {
   // 1. Welded entries share the vertex of the entry they are welded onto; the others are numbered as they come.
-  const std::size_t entries = draco.entries.size();
+  const std::size_t entries = draco.entries;
   std::vector<std::uint32_t> vertex(entries + syntax.loose_vertices.size());
   std::uint32_t vertices = 0;
   auto weld = syntax.welds.begin();
   for (std::uint32_t e = 0; e < entries; ++e) {
     if (weld != syntax.welds.end() && weld->point == e) {
       vertex[e] = vertex[weld->onto];
-      if (draco.entries[e] != draco.entries[weld->onto])
-        return Status::Corrupt("I-frame: a weld of different positions");
       ++weld;
     } else {
       vertex[e] = vertices++;
@@ -34,27 +34,36 @@ Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, 
   }
   if (weld != syntax.welds.end()) return Status::Corrupt("I-frame: a weld of a missing point");
 
-  // 2. Loose vertices and triangles come after Draco's.
+  std::vector<Triangle> triangles = std::move(draco.triangles);
+  for (Triangle& t : triangles) {
+    for (std::uint32_t& v : t) v = vertex[v];
+  }
+
   if (!draco.normals.empty() && !syntax.has_normals && !syntax.loose_vertices.empty()) {
     return Status::Corrupt("I-frame: loose vertices without normals");
   }
   if (!draco.colors.empty() && !syntax.has_colors && !syntax.loose_vertices.empty()) {
     return Status::Corrupt("I-frame: loose vertices without colours");
   }
+
+  // 2. Their positions.
+  std::vector<GridPosition> grid;
+  if (!syntax.mesh.empty()) {
+    SAC_RETURN_IF_ERROR(DecodePositions(syntax.positions, PositionGraph(vertices, triangles),
+                                        {syntax.position_step, syntax.position_slope}, header.position_bits, grid));
+  }
+
+  // 3. Loose vertices and triangles come after Draco's.
   for (std::size_t i = 0; i < syntax.loose_vertices.size(); ++i) {
     const LooseVertex& v = syntax.loose_vertices[i];
     vertex[entries + i] = vertices++;
-    draco.entries.push_back(v.position);
+    grid.push_back(v.position);
     if (syntax.has_normals) draco.normals.resize(entries + i), draco.normals.push_back(v.normal);
     if (syntax.has_colors) draco.colors.resize(entries + i), draco.colors.push_back(v.color);
   }
   if (vertices != header.vertices) return Status::Corrupt("I-frame: the number of vertices is not the header's");
-  if (draco.triangles.size() + syntax.loose_triangles.size() != header.triangles) {
+  if (triangles.size() + syntax.loose_triangles.size() != header.triangles) {
     return Status::Corrupt("I-frame: the number of triangles is not the header's");
-  }
-  std::vector<Triangle> triangles = std::move(draco.triangles);
-  for (Triangle& t : triangles) {
-    for (std::uint32_t& v : t) v = vertex[v];
   }
   triangles.insert(triangles.end(), syntax.loose_triangles.begin(), syntax.loose_triangles.end());
   if (!draco.uv_triangles.empty() && !syntax.loose_triangles.empty()) {
@@ -68,12 +77,11 @@ Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, 
     }
   }
 
-  // 3. Renumber by component and patch, so that each is a run of vertices.
+  // 4. Renumber by component and patch, so that each is a run of vertices.
   std::uint32_t components = 0;
   const std::vector<std::uint32_t> label = LabelComponents(vertices, triangles, components);
   std::vector<std::vector<std::uint32_t>> members(components);
   for (std::uint32_t v = 0; v < vertices; ++v) members[label[v]].push_back(v);
-  const std::vector<GridPosition> grid = Scatter(draco.entries, vertex, vertices);
   const VertexGraph graph = BuildGraph(vertices, triangles);
   std::vector<std::uint32_t> renumbered(vertices);
   std::uint32_t next = 0, next_patch = 0;
@@ -91,7 +99,7 @@ Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, 
   }
   for (std::uint32_t& v : vertex) v = renumbered[v];
 
-  out.mesh.grid = Scatter(draco.entries, vertex, vertices);
+  out.mesh.grid = Scatter(grid, renumbered, vertices);
   out.mesh.triangles = std::move(triangles);
   out.normals = Scatter(draco.normals, vertex, vertices);
   out.colors = Scatter(draco.colors, vertex, vertices);

@@ -39,7 +39,7 @@ Status CheckSettings(const EncoderSettings& s) {
     return Status::InvalidArgument("the detail step must not be negative");
   }
   if (!positive(s.max_error)) return Status::InvalidArgument("the largest error must be positive");
-  if (s.position_bits && (*s.position_bits < 1 || *s.position_bits > 24)) {
+  if (s.position_bits && !(*s.position_bits >= 1 && *s.position_bits <= 24)) {
     return Status::InvalidArgument("position bits must be from 1 to 24");
   }
   if (s.frame_rate_denominator == 0) return Status::InvalidArgument("the frame rate's denominator is zero");
@@ -80,12 +80,33 @@ Status CheckFinite(std::span<const Vec3f> positions) {
   return Status::Ok();
 }
 
-// Puts the grid around the positions; the cell is rounded up to a float so that none falls off.
-Status ChooseGrid(const Positions& positions, SequenceHeader& header, std::vector<GridPosition>& grid) {
+// The grid is finer than what is coded, so that steps can follow the edges' lengths closely.
+constexpr int kGridBits = 5;
+// The part of a step that grows with the edges; the other is the same everywhere.
+constexpr double kStepByEdges = 0.8;
+
+// The median length of edges; 0 without any.
+double MedianEdge(const std::vector<std::array<double, 3>>& cells, const std::vector<Triangle>& triangles) {
+  std::vector<double> lengths;
+  for (const Triangle& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto &a = cells[t[k]], &b = cells[t[(k + 1) % 3]];
+      lengths.push_back(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+    }
+  }
+  if (lengths.empty()) return 0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+// Puts the grid around the positions; the cell is rounded up to a float so that none falls off. `bits`: of a grid whose
+// cell is the step at edges of median length.
+Status ChooseGrid(const Mesh& mesh, double bits, bool by_edges, SequenceHeader& header, PositionTargets& targets) {
   std::array<double, 3> low, high;
   low.fill(std::numeric_limits<double>::max());
   high.fill(std::numeric_limits<double>::lowest());
-  for (const Vec3f& p : positions) {
+  for (const Vec3f& p : mesh.positions) {
     for (std::size_t a = 0; a < 3; ++a) {
       low[a] = std::min(low[a], static_cast<double>(p[a]));
       high[a] = std::max(high[a], static_cast<double>(p[a]));
@@ -93,19 +114,23 @@ Status ChooseGrid(const Positions& positions, SequenceHeader& header, std::vecto
   }
   const double extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
   if (extent > 1e37) return Status::InvalidArgument("the coordinates span more than 1e37");
-  const std::uint32_t last = (1u << header.position_bits) - 1;
+  header.position_bits = static_cast<std::uint8_t>(std::min(std::ceil(bits) + kGridBits, 24.0));
+  const double last = std::ldexp(1.0, header.position_bits) - 1;
   header.cell = std::max(static_cast<float>(extent / last), 1e-35f);
   header.origin_x = static_cast<float>(low[0]);
   header.origin_y = static_cast<float>(low[1]);
   header.origin_z = static_cast<float>(low[2]);
-  grid.clear();
-  for (const Vec3f& p : positions) {
-    GridPosition& g = grid.emplace_back();
+  for (const Vec3f& p : mesh.positions) {
+    std::array<double, 3>& cells = targets.cells.emplace_back();
     for (std::size_t a = 0; a < 3; ++a) {
-      const double cells = std::round((static_cast<double>(p[a]) - low[a]) / static_cast<double>(header.cell));
-      g[a] = static_cast<std::uint32_t>(std::clamp(cells, 0.0, static_cast<double>(last)));
+      cells[a] = std::clamp((static_cast<double>(p[a]) - low[a]) / static_cast<double>(header.cell), 0.0, last);
     }
   }
+  const double step = std::ldexp(1.0, header.position_bits) / std::exp2(bits);
+  const double edge = by_edges ? MedianEdge(targets.cells, mesh.triangles) : 0;
+  const double share = edge > 0 ? kStepByEdges : 0;
+  targets.steps.base = static_cast<std::uint32_t>(std::lround(std::max(16 * (1 - share) * step, 1.0)));
+  targets.steps.slope = edge > 0 ? static_cast<std::uint32_t>(std::lround(4096 * share * step / edge)) : 0;
   return Status::Ok();
 }
 
@@ -189,7 +214,6 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   const double rms = std::max(RmsRadius(first.positions), 1e-30);
   const double displacement_step = settings.displacement_step.value_or(quality.displacement_step);
   header.reference_shape = static_cast<std::uint8_t>(settings.reference_shape);
-  header.position_bits = static_cast<std::uint8_t>(settings.position_bits.value_or(quality.position_bits));
   header.level_growth = static_cast<std::uint8_t>(std::lround(64 * settings.level_growth));
   header.vertices = static_cast<std::uint32_t>(first.positions.size());
   header.triangles = static_cast<std::uint32_t>(first.triangles.size());
@@ -209,11 +233,12 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   header.rotation_step = static_cast<float>(displacement_step);
   header.translation_step = header.displacement_step;
 
-  std::vector<GridPosition> grid;
-  SAC_RETURN_IF_ERROR(ChooseGrid(first.positions, header, grid));
+  PositionTargets targets;
+  SAC_RETURN_IF_ERROR(
+      ChooseGrid(first, settings.position_bits.value_or(quality.position_bits), !settings.max_error, header, targets));
   IFrameSyntax syntax;
   DecodedIFrame decoded;
-  SAC_RETURN_IF_ERROR(EncodeIFrameMesh(first, grid, header, syntax, decoded, order));
+  SAC_RETURN_IF_ERROR(EncodeIFrameMesh(first, targets, header, syntax, decoded, order));
   const std::vector<std::uint32_t> counts = ShareHarmonics(decoded.mesh, settings.harmonics);
   for (const std::uint32_t c : counts) header.harmonics += c;
   syntax.harmonics = counts;

@@ -27,7 +27,7 @@ struct EncoderSettings {
   std::optional<double> displacement_step;                // fraction of the first frame's RMS radius
   std::optional<double> detail_step;       // fraction of the first frame's RMS radius; 0: no detail plane
   std::optional<double> max_error;         // of any vertex in any frame, model units
-  std::optional<int> position_bits;        // of the I-frame's grid, 1..24
+  std::optional<double> position_bits;     // of the I-frame: log2 of its extent in steps, 1..24
   std::uint32_t frame_rate_numerator = 0;  // frames per second; 0: unknown
   std::uint32_t frame_rate_denominator = 1;
   bool keep_order = false;  // put the input's vertex order in the stream

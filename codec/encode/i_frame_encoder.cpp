@@ -3,8 +3,11 @@
 #include <draco/compression/expert_encode.h>
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <utility>
+
+#include "codec/encode/position_search.h"
 
 namespace sac {
 namespace {
@@ -70,8 +73,7 @@ std::vector<Value> Gather(const std::vector<Value>& values, const std::vector<st
 }
 
 // With `with_ids`, each entry also carries its number, to learn how Draco reorders and splits.
-Status RunDraco(const Mesh& input, const std::vector<GridPosition>& grid, const DracoInput& selected, bool with_ids,
-                std::vector<std::uint8_t>& bytes) {
+Status RunDraco(const Mesh& input, const DracoInput& selected, bool with_ids, std::vector<std::uint8_t>& bytes) {
   draco::Mesh mesh;
   mesh.set_num_points(static_cast<std::uint32_t>(selected.points.size()));
   mesh.SetNumFaces(selected.triangles.size());
@@ -80,7 +82,9 @@ Status RunDraco(const Mesh& input, const std::vector<GridPosition>& grid, const 
     mesh.SetFace(draco::FaceIndex(j), {draco::PointIndex(t[0]), draco::PointIndex(t[1]), draco::PointIndex(t[2])});
   }
   using Attribute = draco::GeometryAttribute;
-  AddAttribute(mesh, selected, Attribute::POSITION, draco::DT_INT32, false, 0, Gather(grid, selected.vertices));
+  // Draco needs positions to tell vertices apart, but not their values.
+  AddAttribute(mesh, selected, Attribute::POSITION, draco::DT_INT32, false, 0,
+               std::vector<std::array<std::int32_t, 3>>(selected.vertices.size()));
   int uv = -1, normal = -1;
   if (!input.uv_triangles.empty()) {
     uv = AddAttribute(mesh, selected, Attribute::TEX_COORD, draco::DT_FLOAT32, false, 1, input.uvs);
@@ -100,8 +104,14 @@ Status RunDraco(const Mesh& input, const std::vector<GridPosition>& grid, const 
   draco::ExpertEncoder encoder(mesh);
   encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
   encoder.SetSpeedOptions(0, 0);
-  if (uv >= 0) encoder.SetAttributeQuantization(uv, kUvBits);
-  if (normal >= 0) encoder.SetAttributeQuantization(normal, kNormalBits);
+  if (uv >= 0) {
+    encoder.SetAttributeQuantization(uv, kUvBits);
+    (void)encoder.SetAttributePredictionScheme(uv, draco::MESH_PREDICTION_CONSTRAINED_MULTI_PARALLELOGRAM);
+  }
+  if (normal >= 0) {
+    encoder.SetAttributeQuantization(normal, kNormalBits);
+    (void)encoder.SetAttributePredictionScheme(normal, draco::PREDICTION_DIFFERENCE);
+  }
   draco::EncoderBuffer buffer;
   const draco::Status status = encoder.EncodeToBuffer(&buffer);
   if (!status.ok()) return Status::InvalidArgument("Draco: " + status.error_msg_string());
@@ -117,32 +127,50 @@ Triangle Canonical(Triangle t) {
 
 // Codes what Draco can take and decodes it again, with the input vertex of each entry as its id. False when Draco fails
 // on this mesh: then the whole mesh is coded loose.
-bool TryDraco(const Mesh& input, const std::vector<GridPosition>& grid, const SequenceHeader& header,
-              std::vector<std::uint8_t>& bytes, DracoMesh& draco) {
+bool TryDraco(const Mesh& input, const SequenceHeader& header, std::vector<std::uint8_t>& bytes, DracoMesh& draco) {
   const DracoInput selected = SelectForDraco(input);
   if (selected.triangles.empty()) return false;
   std::vector<std::uint8_t> bytes_with_ids;
   DracoMesh with_ids;
-  if (!RunDraco(input, grid, selected, false, bytes).ok() || !DecodeDraco(bytes, header, draco).ok()) return false;
-  if (!RunDraco(input, grid, selected, true, bytes_with_ids).ok() ||
-      !DecodeDraco(bytes_with_ids, header, with_ids).ok()) {
+  if (!RunDraco(input, selected, false, bytes).ok() || !DecodeDraco(bytes, header, draco).ok()) return false;
+  if (!RunDraco(input, selected, true, bytes_with_ids).ok() || !DecodeDraco(bytes_with_ids, header, with_ids).ok()) {
     return false;
   }
   // The ids are of another run; they count only if both agree on everything else.
   if (with_ids.triangles != draco.triangles || with_ids.entries != draco.entries) return false;
   draco.ids = Gather(selected.vertices, with_ids.ids);
-  for (std::size_t e = 0; e < draco.entries.size(); ++e) {
-    if (draco.entries[e] != grid[draco.ids[e]]) return false;
-  }
   return true;
+}
+
+GridPosition Rounded(const std::array<double, 3>& cells, int bits) {
+  GridPosition grid;
+  for (std::size_t a = 0; a < 3; ++a) {
+    grid[a] = static_cast<std::uint32_t>(std::clamp(std::round(cells[a]), 0.0, std::ldexp(1.0, bits) - 1));
+  }
+  return grid;
+}
+
+// Codes the positions of the vertices that Draco's entries are joined to.
+void CodePositions(const PositionTargets& targets, const DracoMesh& draco,
+                   const std::vector<std::uint32_t>& vertex_of_input, std::uint32_t vertices,
+                   const SequenceHeader& header, IFrameSyntax& syntax) {
+  std::vector<std::array<double, 3>> cells(vertices);
+  for (const std::uint32_t i : draco.ids) cells[vertex_of_input[i]] = targets.cells[i];
+  std::vector<Triangle> triangles = draco.triangles;
+  for (Triangle& t : triangles) {
+    for (std::uint32_t& e : t) e = vertex_of_input[draco.ids[e]];
+  }
+  syntax.position_step = targets.steps.base;
+  syntax.position_slope = targets.steps.slope;
+  syntax.positions = EncodePositions(cells, PositionGraph(vertices, triangles), targets.steps, header.position_bits);
 }
 
 }  // namespace
 
-Status EncodeIFrameMesh(const Mesh& input, const std::vector<GridPosition>& grid, const SequenceHeader& header,
+Status EncodeIFrameMesh(const Mesh& input, const PositionTargets& targets, const SequenceHeader& header,
                         IFrameSyntax& syntax, DecodedIFrame& decoded, std::vector<std::uint32_t>& input_of_vertex) {
   DracoMesh draco;
-  if (!TryDraco(input, grid, header, syntax.mesh, draco)) {
+  if (!TryDraco(input, header, syntax.mesh, draco)) {
     syntax.mesh.clear();
     draco = {};
   }
@@ -153,7 +181,7 @@ Status EncodeIFrameMesh(const Mesh& input, const std::vector<GridPosition>& grid
   std::vector<std::uint32_t> vertex_of_input(input.positions.size(), kNoEntry), first_entry(input.positions.size());
   std::vector<std::uint32_t> input_of_entry = draco.ids;
   std::uint32_t vertices = 0;
-  for (std::uint32_t e = 0; e < draco.entries.size(); ++e) {
+  for (std::uint32_t e = 0; e < draco.entries; ++e) {
     const std::uint32_t i = draco.ids[e];
     if (vertex_of_input[i] == kNoEntry) {
       vertex_of_input[i] = vertices++;
@@ -162,11 +190,13 @@ Status EncodeIFrameMesh(const Mesh& input, const std::vector<GridPosition>& grid
       syntax.welds.push_back({e, first_entry[i]});
     }
   }
+  if (!syntax.mesh.empty()) CodePositions(targets, draco, vertex_of_input, vertices, header, syntax);
   for (std::uint32_t i = 0; i < input.positions.size(); ++i) {
     if (vertex_of_input[i] != kNoEntry) continue;
     vertex_of_input[i] = vertices++;
     input_of_entry.push_back(i);
-    LooseVertex& loose = syntax.loose_vertices.emplace_back(LooseVertex{grid[i], {}, {}});
+    LooseVertex& loose =
+        syntax.loose_vertices.emplace_back(LooseVertex{Rounded(targets.cells[i], header.position_bits), {}, {}});
     if (syntax.has_normals) loose.normal = input.normals[i];
     if (syntax.has_colors) loose.color = input.colors[i];
   }

@@ -1,20 +1,28 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
 #include "codec/decode/i_frame.h"
 #include "codec/mesh.h"
+#include "codec/position_predictor.h"
 #include "format/i_frame_syntax.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
 
 namespace sac {
 
+// Where the input's vertices are, in cells of the header's grid, and how finely they are wanted.
+struct PositionTargets {
+  std::vector<std::array<double, 3>> cells;
+  PositionSteps steps;
+};
+
 // Codes the mesh part of an I-frame: fills `syntax` but for the basis, decodes it again into `decoded`, and gives for
-// each decoded vertex its index in the input. `grid` holds the input's vertices on the header's grid.
+// each decoded vertex its index in the input.
 // kInvalidArgument when the mesh cannot be coded.
-Status EncodeIFrameMesh(const Mesh& input, const std::vector<GridPosition>& grid, const SequenceHeader& header,
+Status EncodeIFrameMesh(const Mesh& input, const PositionTargets& targets, const SequenceHeader& header,
                         IFrameSyntax& syntax, DecodedIFrame& decoded, std::vector<std::uint32_t>& input_of_vertex);
 
 }  // namespace sac

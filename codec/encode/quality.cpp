@@ -32,8 +32,7 @@ QualitySettings SettingsOfQuality(double quality) {
     return a * std::pow(b / a, t);
   };
   return {quality, between(low.motion_step, high.motion_step), between(low.displacement_step, high.displacement_step),
-          between(low.detail_step, high.detail_step),
-          static_cast<int>(std::lround(low.position_bits + t * (high.position_bits - low.position_bits)))};
+          between(low.detail_step, high.detail_step), low.position_bits + t * (high.position_bits - low.position_bits)};
 }
 
 }  // namespace sac

@@ -8,7 +8,7 @@ struct QualitySettings {
   double motion_step;        // radians and strain
   double displacement_step;  // fraction of the RMS radius
   double detail_step;        // fraction of the RMS radius; 0: no detail plane
-  int position_bits;
+  double position_bits;      // log2 of the extent in the I-frame's steps
 };
 
 // `quality` from 0 to 100: from a table measured on several clips (docs/quality.md), interpolated between its rows.

@@ -16,7 +16,7 @@ TEST_F(ReportTest, InfoTellsEveryPacket) {
   EXPECT_EQ(info["components"], 1);
   EXPECT_EQ(info["keeps_order"], true);
   EXPECT_EQ(info["attributes"], nlohmann::json({"texture_coordinates"}));
-  EXPECT_EQ(info["header"]["position_bits"], 11);
+  EXPECT_EQ(info["header"]["position_bits"], 11 + 5);
   EXPECT_EQ(info["header"]["harmonics"], 30);
   EXPECT_NEAR(info["duration"].get<double>(), 12 * 1001.0 / 30000, 1e-12);
   std::vector<std::string> types;
