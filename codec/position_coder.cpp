@@ -4,6 +4,35 @@
 #include <cstdlib>
 
 namespace sac {
+namespace {
+
+// Lengths in 1/16 of a step, in half octaves.
+std::size_t Class(std::int64_t length, std::int64_t step) {
+  return std::min<std::size_t>(HalfOctave(static_cast<std::uint32_t>(std::min<std::int64_t>(length / step, 1 << 20))),
+                               23);
+}
+
+constexpr std::int32_t kWeight = 65536 / 4;
+
+}  // namespace
+
+template <class Coder>
+PositionCoder<Coder>::PositionCoder() {
+  const Mixer<kInputs> mixer({kWeight, kWeight, kWeight, kWeight, 0});
+  by_kind_.assign(kKinds, mixer);
+  by_kind_and_axis_.assign(kKinds * 3, mixer);
+}
+
+template <class Coder>
+void PositionCoder<Coder>::CodeBin(Coder& coder, const Contexts& contexts, std::size_t axis, std::size_t bin,
+                                   bool& value) {
+  const std::size_t kind = std::min(bin, kKinds - 1);
+  std::array<AdaptiveBit*, kStates> states;
+  for (std::size_t i = 0; i < kStates; ++i) states[i] = &(*contexts[i])[bin];
+  std::array<std::int32_t, kInputs> inputs;
+  inputs[kStates] = 256;
+  CodeMixed(coder, by_kind_[kind], by_kind_and_axis_[kind * 3 + axis], inputs, states, value);
+}
 
 template <class Coder>
 bool PositionCoder<Coder>::Code(Coder& coder, const PositionPredictor& predictor, int bits, PositionResidual& residual,
@@ -11,38 +40,40 @@ bool PositionCoder<Coder>::Code(Coder& coder, const PositionPredictor& predictor
   const PositionPredictor::Prediction& p = predictor.now();
   PositionPredictor::Vector offset = {};
   std::int64_t before = p.activity;  // how far off the axes before were
+  const std::size_t shape = std::min(p.parallelograms, kShapes - 1);
   for (std::size_t j = 0; j < 3; ++j) {
     const std::size_t axis = p.axes[j];
     const std::int64_t expected = predictor.Expected(j, offset);
-    const std::size_t activity =
-        p.neighbours == 0 ? kActivities - 1 : ActivityClass((p.activity + p.surrounding + before) / 3 / p.step);
-    MagnitudeModels& models = magnitudes_[activity * kShapes + std::min(p.parallelograms, kShapes - 1)];
-
+    const std::size_t around =
+        p.neighbours == 0 ? kClasses - 1 : Class((p.activity + p.surrounding + before) / 3, p.step);
+    const Contexts contexts = {&by_surroundings_[around * 3 + j], &by_axis_[Class(before, p.step) * 3 + j],
+                               &by_spread_[Class(p.spread, p.step) * kShapes + shape],
+                               &by_shape_[std::min<std::size_t>(p.neighbours, 7) * kShapes + shape]};
     bool nonzero = residual[j] != 0;
-    coder.Bit(models.nonzero, nonzero);
+    CodeBin(coder, contexts, j, 0, nonzero);
+    std::int64_t steps = 0;
     if (nonzero) {
       const std::int64_t lean = p.relaxed[axis] - 16 * expected;
       bool negative = residual[j] < 0;
-      coder.Bit(signs_[2 * ActivityClass(std::abs(lean) / p.step) + (lean < 0 ? 1 : 0)], negative);
+      coder.Bit(signs_[2 * Class(std::abs(lean), p.step) + (lean < 0 ? 1 : 0)], negative);
       std::uint32_t magnitude = Coder::kDecodes ? 1 : static_cast<std::uint32_t>(std::abs(residual[j]));
-      std::size_t step = 0;
-      for (; step < models.unary.size(); ++step) {
-        bool more = magnitude > step + 1;
-        coder.Bit(models.unary[step], more);
+      std::size_t bin = 1;
+      for (; bin <= kUnary; ++bin) {
+        bool more = magnitude > bin;
+        CodeBin(coder, contexts, j, bin, more);
         if (!more) break;
         if constexpr (Coder::kDecodes) ++magnitude;
       }
-      if (step == models.unary.size()) {
-        std::uint32_t rest = magnitude - static_cast<std::uint32_t>(step) - 1;
-        CodeUnsigned(coder, models.rest, rest);
+      if (bin > kUnary) {
+        std::uint32_t rest = magnitude - static_cast<std::uint32_t>(bin);
+        CodeUnsigned(coder, rest_, rest);
         if (rest >> bits != 0) return false;
-        magnitude = rest + static_cast<std::uint32_t>(step) + 1;
+        magnitude = rest + static_cast<std::uint32_t>(bin);
       }
-      residual[j] = negative ? -static_cast<std::int32_t>(magnitude) : static_cast<std::int32_t>(magnitude);
-    } else {
-      residual[j] = 0;
+      steps = negative ? -static_cast<std::int64_t>(magnitude) : magnitude;
     }
-    const std::int64_t at = expected + residual[j] * p.step;
+    residual[j] = static_cast<std::int32_t>(steps);
+    const std::int64_t at = expected + steps * p.step;
     if (at < 0 || at >= std::int64_t{1} << bits) return false;
     position[axis] = static_cast<std::uint32_t>(at);
     offset[j] = 16 * at - p.centre[axis];

@@ -7,7 +7,7 @@
 
 #include "codec/patches.h"
 #include "codec/position_predictor.h"
-#include "format/activity.h"
+#include "format/bit_mixer.h"
 #include "format/integer_coder.h"
 #include "format/range_coder.h"
 #include "format/status.h"
@@ -21,21 +21,30 @@ using PositionResidual = std::array<std::int32_t, 3>;
 template <class Coder>
 class PositionCoder {
  public:
+  PositionCoder();
+
   // Of the vertex that `predictor` has predicted. False when the position is off a grid of `bits` bits.
   bool Code(Coder& coder, const PositionPredictor& predictor, int bits, PositionResidual& residual,
             GridPosition& position);
 
  private:
-  struct MagnitudeModels {
-    BitModel nonzero;
-    std::array<BitModel, 14> unary;
-    UnsignedModels rest;
-  };
+  static constexpr std::size_t kUnary = 14;  // bins of a magnitude that have contexts
+  static constexpr std::size_t kKinds = 6;   // of bins that have mixers of their own: zero or not, then unary bins
+  static constexpr std::size_t kClasses = 24;
+  static constexpr std::size_t kShapes = 5;  // by the number of parallelograms
+  static constexpr std::size_t kStates = 4;
+  static constexpr std::size_t kInputs = kStates + 1;
 
-  static constexpr std::size_t kShapes = 4;  // by the number of parallelograms
+  using Bins = std::array<AdaptiveBit, 1 + kUnary>;
+  using Contexts = std::array<Bins*, kStates>;
 
-  std::array<MagnitudeModels, kActivities * kShapes> magnitudes_;
-  std::array<BitModel, 2 * kActivities> signs_;
+  void CodeBin(Coder& coder, const Contexts& contexts, std::size_t axis, std::size_t bin, bool& value);
+
+  std::vector<Bins> by_surroundings_{kClasses * 3}, by_axis_{kClasses * 3}, by_spread_{kClasses * kShapes},
+      by_shape_{8 * kShapes};
+  std::vector<Mixer<kInputs>> by_kind_, by_kind_and_axis_;
+  std::array<BitModel, 2 * kClasses> signs_;
+  UnsignedModels rest_;
 };
 
 extern template class PositionCoder<RangeEncoder>;

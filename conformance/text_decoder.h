@@ -58,6 +58,7 @@ class TextDecoder {
     m.count = std::min(m.count + 1, 127u);
     return bin;
   }
+  int Mixed(std::uint32_t p) { return Decide((range_ >> 16) * p); }
   std::uint32_t Raw(std::uint32_t n) {
     std::uint32_t value = 0;
     for (; n > 0; --n) value = value * 2 + static_cast<std::uint32_t>(Decide(range_ >> 1));
@@ -105,23 +106,72 @@ inline std::int64_t ReadSe(TextDecoder& in, TextSe& models) {
   return negative ? -magnitude : magnitude;
 }
 
-struct TextCoefficient {
-  TextModel nonzero;
-  std::array<TextModel, 14> unary;
-  std::array<TextModel, 20> escape;
-};
-inline std::int32_t ReadCoefficient(TextDecoder& in, TextCoefficient& models) {
-  if (!in.Bin(models.nonzero)) return 0;
-  const bool negative = in.Raw(1);
-  std::uint32_t magnitude = 1;
-  while (magnitude < 15 && in.Bin(models.unary[magnitude - 1])) ++magnitude;
-  if (magnitude == 15) {
-    std::uint32_t width = 0;
-    while (width < 20 && in.Bin(models.escape[width])) ++width;
-    magnitude = 14 + (1u << width) + in.Raw(width);
+// Section 7.4.
+inline std::int64_t TextSquash(std::int64_t x) {
+  if (x < 0) return 65536 - TextSquash(-x);
+  std::vector<std::int64_t> t;
+  for (const std::string& line : Example("logistic")) {
+    for (const std::string& word : Words(line)) t.push_back(std::stol(word));
   }
-  const auto value = static_cast<std::int32_t>(magnitude);
-  return negative ? -value : value;
+  const std::size_t k = static_cast<std::size_t>(x / 128);
+  return x == 2816 ? 65535 : t.at(k) + ((t.at(k + 1) - t.at(k)) * (x % 128) + 64) / 128;
+}
+inline std::int64_t TextStretch(std::int64_t p) {
+  static const std::vector<std::int64_t> table = [] {
+    std::vector<std::int64_t> squashed, found;
+    for (std::int64_t x = -2816; x <= 2816; ++x) squashed.push_back(TextSquash(x));
+    for (std::int64_t i = 0; i < 4096; ++i) {
+      std::int64_t x = -2816;
+      while (x < 2816 && squashed[static_cast<std::size_t>(x + 2816)] < 16 * i + 8) ++x;
+      found.push_back(x);
+    }
+    return found;
+  }();
+  return table.at(static_cast<std::size_t>(p >> 4));
+}
+inline std::int64_t Q(std::int64_t x) {
+  if (x < 4) return x;
+  const int octave = std::ilogb(static_cast<double>(x));
+  return 2 * octave + ((x >> (octave - 1)) & 1);
+}
+
+struct TextState {
+  std::int64_t p = 32768, n = 0;
+  std::int64_t Input() const { return (TextStretch(p) * (512 * n / (2 * n + 3))) >> 8; }
+  void Update(int bin) {
+    const std::int64_t rate = 655360 / (10 * n + 16);
+    p = bin ? p + (((65535 - p) * rate) >> 16) : p - ((p * rate) >> 16);
+    n = std::min<std::int64_t>(n + 1, 60);
+  }
+};
+
+using TextMixer = std::vector<std::int32_t>;  // weights
+inline int ReadMixed(TextDecoder& in, std::array<TextMixer*, 2> mixers, std::vector<TextState*> states,
+                     const std::vector<std::int64_t>& features) {
+  static const std::vector<std::int64_t> squash = [] {
+    std::vector<std::int64_t> values;
+    for (std::int64_t x = -2816; x <= 2816; ++x) values.push_back(TextSquash(x));
+    return values;
+  }();
+  std::vector<std::int64_t> inputs;
+  for (const TextState* state : states) inputs.push_back(state->Input());
+  inputs.insert(inputs.end(), features.begin(), features.end());
+  std::array<std::int64_t, 2> x{};
+  for (std::size_t m = 0; m < 2; ++m) {
+    for (std::size_t i = 0; i < inputs.size(); ++i) x[m] += inputs[i] * mixers[m]->at(i);
+    x[m] = std::clamp<std::int64_t>(x[m] >> 16, -2816, 2816);
+  }
+  const std::int64_t p = squash[static_cast<std::size_t>(((x[0] + x[1]) >> 1) + 2816)];
+  const int bin = in.Mixed(static_cast<std::uint32_t>(std::clamp<std::int64_t>(p, 24, 65512)));
+  for (std::size_t m = 0; m < 2; ++m) {
+    const std::int64_t e = (14 * ((bin ? 65535 : 0) - squash[static_cast<std::size_t>(x[m] + 2816)]) + 32) >> 6;
+    for (std::size_t i = 0; i < inputs.size(); ++i) {
+      const std::int64_t weight = mixers[m]->at(i) + ((inputs[i] * e + 2048) >> 12);
+      mixers[m]->at(i) = static_cast<std::int32_t>(static_cast<std::uint32_t>(weight));
+    }
+  }
+  for (TextState* state : states) state->Update(bin);
+  return bin;
 }
 
 // Section 6.2. A plane is [row][channel].
@@ -131,21 +181,38 @@ struct TextFrame {
   std::array<std::vector<std::vector<std::int32_t>>, 4> planes;
 };
 
+// One plane's memory through a group.
+struct TextPlane {
+  std::vector<std::int64_t> row_classes;
+  std::vector<std::vector<std::int64_t>> recent;                 // h of [row][channel]
+  std::map<std::vector<std::int64_t>, TextState> states;         // by input, bin and context
+  std::map<std::vector<std::int64_t>, TextMixer> first, second;  // by kind and level, by kind and activity
+  std::map<std::vector<std::int64_t>, TextState> sign_states;    // by input and context
+  std::map<std::int64_t, TextMixer> sign_first;                  // by level
+  TextMixer sign_second = {40 * 1024, 40 * 1024};
+  std::array<TextModel, 20> escape;
+};
+
 class TextFrameReader {
  public:
   // Harmonics of components, and vertices of patches; empty without a detail plane.
   TextFrameReader(const std::vector<std::uint32_t>& harmonics, const std::vector<std::uint32_t>& patches,
-                  std::size_t corrected_vertices) {
-    for (const HarmonicIndex& i : HarmonicOrder(harmonics)) bands_[0].push_back(std::min(Log2(i.k + 1) / 2, 6u));
-    bands_[1] = bands_[0];
-    for (const HarmonicIndex& i : HarmonicOrder(patches)) bands_[2].push_back(std::min(Log2(i.k + 1), 6u));
-    bands_[3].assign(corrected_vertices, 0);
-    for (const std::string& word : Words(Example("thresholds").at(0))) thresholds_.push_back(std::stol(word));
-    for (auto& plane : coefficients_) {
-      for (auto& level : plane) level.resize(16 * 7);
+                  std::size_t corrected_vertices, std::int64_t growth, bool predicts_planes)
+      : growth_(growth), predicts_planes_(predicts_planes) {
+    for (const HarmonicIndex& i : HarmonicOrder(harmonics)) {
+      planes_[0].row_classes.push_back(std::min<std::int64_t>(Q(i.k + 1), 23));
+    }
+    planes_[1].row_classes = planes_[0].row_classes;
+    for (const HarmonicIndex& i : HarmonicOrder(patches)) {
+      planes_[2].row_classes.push_back(std::min<std::int64_t>(Q(i.k + 1), 23));
+    }
+    planes_[3].row_classes.assign(corrected_vertices, 1);
+    for (std::size_t p = 0; p < 4; ++p) {
+      planes_[p].recent.assign(planes_[p].row_classes.size(), std::vector<std::int64_t>(p == 0 ? 9 : 3));
     }
   }
 
+  // The residuals of the frame at a slot of the structure; afterwards coefficients().back() are what they add up to.
   const TextFrame& Read(TextDecoder& in, const FrameSlot& slot) {
     TextFrame frame;
     frame.references = slot.references;
@@ -156,56 +223,193 @@ class TextFrameReader {
       frame.references.resize(static_cast<std::size_t>(any + two));
       for (std::uint32_t& r : frame.references) r = index - 1 - ReadUe(in, reference_);
     }
+    slots_.push_back(slot);
     const std::size_t level = std::min(slot.level, 2u);
     if (in.Bin(moves_[level])) {
       for (std::size_t i = 0; i < 6; ++i) frame.rigid[i] = ReadSe(in, rigid_[i / 3][level]);
     }
     for (std::size_t p = 0; p < 4; ++p) {
       auto& plane = frame.planes[p];
-      plane.assign(bands_[p].size(), std::vector<std::int32_t>(p == 0 ? 9 : 3));
-      if (plane.empty() || in.Bin(empty_[p][level])) continue;
+      plane.assign(planes_[p].row_classes.size(), std::vector<std::int32_t>(p == 0 ? 9 : 3));
+      if (plane.empty()) continue;
+      if (!in.Bin(empty_[p][level])) {
+        for (std::size_t i = 0; i < plane.size(); ++i) {
+          for (std::size_t j = 0; j < plane[i].size(); ++j) plane[i][j] = ReadResidual(in, frame, p, i, j);
+        }
+      }
       for (std::size_t i = 0; i < plane.size(); ++i) {
         for (std::size_t j = 0; j < plane[i].size(); ++j) {
-          plane[i][j] = ReadCoefficient(in, coefficients_[p][level][7 * Class(frame, p, i, j) + bands_[p][i]]);
+          std::int64_t& h = planes_[p].recent[i][j];
+          const std::int64_t size = std::abs(std::int64_t{plane[i][j]}) * Step(p);
+          h += (4 * std::min<std::int64_t>(size, 1 << 20) - h) >> 3;
         }
       }
     }
     frames_.push_back(frame);
+    AddUp();
     return frames_.back();
   }
+  const std::vector<TextFrame>& coefficients() const { return coefficients_; }
 
  private:
-  static unsigned Log2(std::uint32_t x) { return static_cast<unsigned>(std::ilogb(static_cast<double>(x))); }
-  static std::int64_t Magnitude(const TextFrame& frame, std::size_t p, std::ptrdiff_t i, std::size_t j) {
-    const auto& plane = frame.planes[p];
-    if (i < 0 || i >= static_cast<std::ptrdiff_t>(plane.size())) return 0;
-    return std::min(std::abs(plane[static_cast<std::size_t>(i)][j]), 1 << 15);
+  // Section 6.3, of the frame being read.
+  std::int64_t Step(std::size_t p) const {
+    std::int64_t step = 16;
+    if (p == 3) return step;
+    for (std::uint32_t i = 0; i < slots_.back().level && step < 4096; ++i) step = (step * growth_ + 32) / 64;
+    return std::min<std::int64_t>(step, 4096);
   }
-  std::size_t Class(const TextFrame& frame, std::size_t p, std::size_t row, std::size_t j) const {
-    const auto i = static_cast<std::ptrdiff_t>(row);
-    std::int64_t s = 12 * Magnitude(frame, p, i - 1, j) + 6 * Magnitude(frame, p, i - 2, j) +
-                     3 * Magnitude(frame, p, i - 3, j) + 3 * Magnitude(frame, p, i - 4, j);
-    for (std::size_t r = 0; r < 2 && !frame.references.empty(); ++r) {
-      const TextFrame& other = frames_[frame.references[std::min(r, frame.references.size() - 1)]];
-      s += 4 * Magnitude(other, p, i, j) + 2 * Magnitude(other, p, i - 1, j) + 2 * Magnitude(other, p, i + 1, j);
+  template <class Value>
+  std::int64_t Bend(const std::vector<std::uint32_t>& references, Value&& value) const {
+    if (references.empty()) return 0;
+    const bool one = references.size() == 1;
+    const std::int64_t x_a = value(coefficients_[references[0]]), x_b = value(coefficients_[references.back()]);
+    const std::int64_t d_a = slots_[references[0]].display, d_b = slots_[references.back()].display;
+    std::int64_t sum = 0;
+    for (std::size_t o = 0; o < coefficients_.size(); ++o) {
+      const std::int64_t at = slots_[o].display, x = value(coefficients_[o]);
+      if (one && at == 2 * d_a - slots_.back().display) sum += 8 * (x_a - x);
+      if (!one && at == 2 * d_a - d_b) sum += 2 * x_a - x_b - x;
+      if (!one && at == 2 * d_b - d_a) sum += 2 * x_b - x_a - x;
     }
-    std::int64_t before = 0;
-    for (std::size_t c = 0; c < j; ++c) before += Magnitude(frame, p, i, c);
-    if (j > 0) s += 24 * before / static_cast<std::int64_t>(j);
-    return static_cast<std::size_t>(
-        std::count_if(thresholds_.begin(), thresholds_.end(), [s](std::int64_t t) { return t <= s; }));
+    return sum;
+  }
+  void AddUp() {
+    TextFrame frame = frames_.back();
+    const auto predict = [&](auto&& value) -> std::int64_t {
+      if (frame.references.empty()) return 0;
+      const std::int64_t a = value(coefficients_.at(frame.references[0]));
+      if (frame.references.size() == 1) return a;
+      return (a + value(coefficients_.at(frame.references[1])) + 1) >> 1;
+    };
+    for (std::size_t i = 0; i < 6; ++i) frame.rigid[i] += predict([&](const TextFrame& f) { return f.rigid[i]; });
+    for (std::size_t p = 0; p < 4; ++p) {
+      for (std::size_t i = 0; i < frame.planes[p].size(); ++i) {
+        for (std::size_t j = 0; j < frame.planes[p][i].size(); ++j) {
+          const auto at = [&](const TextFrame& f) { return std::int64_t{f.planes[p][i][j]}; };
+          std::int64_t prediction = p == 3 || !predicts_planes_ ? 0 : predict(at);
+          if (p < 2 && predicts_planes_ && slots_.back().level >= 3 && frame.references.size() == 2) {
+            const std::int64_t sum = at(coefficients_[frame.references[0]]) + at(coefficients_[frame.references[1]]);
+            prediction = (8 * sum + Bend(frame.references, at) + 8) >> 4;
+          }
+          std::int32_t& value = frame.planes[p][i][j];
+          value = static_cast<std::int32_t>(prediction + value * Step(p));
+        }
+      }
+    }
+    coefficients_.push_back(frame);
   }
 
-  std::array<std::vector<std::size_t>, 4> bands_;
-  std::vector<std::int64_t> thresholds_;
-  std::vector<TextFrame> frames_;
+  // Section 7.4, of the frame being read.
+  static std::int64_t At(const TextFrame& frame, std::size_t p, std::ptrdiff_t i, std::size_t j) {
+    const auto& plane = frame.planes[p];
+    return i < 0 || i >= static_cast<std::ptrdiff_t>(plane.size()) ? 0 : plane[static_cast<std::size_t>(i)][j];
+  }
+  static std::int64_t Magnitude(const TextFrame& frame, std::size_t p, std::ptrdiff_t i, std::size_t j) {
+    return std::min<std::int64_t>(std::abs(At(frame, p, i, j)), 1 << 15);
+  }
+  static std::int64_t Sign(std::int64_t x) { return (x > 0) - (x < 0); }
+  static TextMixer Weights(std::size_t p, std::int64_t kind, std::int64_t level) {
+    for (const std::string& line : Example("weights")) {
+      const auto words = Words(line);
+      if (words[0] != std::to_string(std::min<std::size_t>(p, 2))) continue;
+      if (words[1] != std::to_string(std::min<std::int64_t>(kind, 2))) continue;
+      if (words[2] != "*" && words[2] != std::to_string(level)) continue;
+      TextMixer weights = Numbers<std::int32_t>(words, 3);
+      for (std::int32_t& w : weights) w *= 1024;
+      return weights;
+    }
+    ADD_FAILURE() << "no weights of plane " << p << ", kind " << kind << ", level " << level;
+    return {};
+  }
+  template <class Key>
+  static TextMixer* Find(std::map<Key, TextMixer>& mixers, const Key& key, const TextMixer& fresh) {
+    return &mixers.try_emplace(key, fresh).first->second;
+  }
+
+  std::int32_t ReadResidual(TextDecoder& in, const TextFrame& frame, std::size_t p, std::size_t row, std::size_t j) {
+    const auto i = static_cast<std::ptrdiff_t>(row);
+    const auto column = static_cast<std::int64_t>(j);
+    TextPlane& plane = planes_[p];
+    const std::int64_t step = Step(p), v = std::min(slots_.back().level, 4u), l = std::min(slots_.back().level, 2u);
+    const auto m = [&](std::ptrdiff_t at) { return Magnitude(frame, p, at, j); };
+    const std::int64_t near = 12 * m(i - 1) + 6 * m(i - 2) + 3 * m(i - 3) + 3 * m(i - 4);
+    std::int64_t before = 0;
+    for (std::size_t c = 0; c < j; ++c) before += 24 * Magnitude(frame, p, i, c);
+    if (j > 0) before /= column;
+    std::int64_t around = 0, touched = 0, reference_sign = 0, spread = 0, bend = 0;
+    if (!frame.references.empty()) {
+      const std::uint32_t first = frame.references[0], second = frame.references.back();
+      for (const std::uint32_t r : {first, second}) {
+        touched += Magnitude(frames_[r], p, i, j);
+        around += 4 * Magnitude(frames_[r], p, i, j) + 2 * Magnitude(frames_[r], p, i - 1, j) +
+                  2 * Magnitude(frames_[r], p, i + 1, j);
+        reference_sign += Sign(At(frames_[r], p, i, j));
+      }
+      spread = std::abs(At(coefficients_[first], p, i, j) - At(coefficients_[second], p, i, j));
+      bend = Bend(frame.references, [&](const TextFrame& f) { return At(f, p, i, j); });
+    }
+    const auto h = [&](std::ptrdiff_t at) {
+      return at < 0 || at >= static_cast<std::ptrdiff_t>(plane.recent.size())
+                 ? 0
+                 : plane.recent[static_cast<std::size_t>(at)][j];
+    };
+    const std::int64_t recent = std::min<std::int64_t>(Q(16 * h(i) / step / 4), 19);
+    const std::int64_t wide = Q((16 * h(i) + 4 * (h(i - 1) + h(i + 1))) / step);
+    const std::int64_t spread_class = Q(16 * std::min<std::int64_t>(spread, 1 << 26) / step);
+    const std::int64_t bend_class =
+        std::min<std::int64_t>(Q(std::min<std::int64_t>(std::abs(bend), 1 << 30) / (2 * step)), 11);
+    const std::int64_t activity = std::min<std::int64_t>(Q((near + around + before) / 2), 23);
+    const std::int64_t low_row = std::min<std::int64_t>(i, 1023);
+    const std::vector<std::vector<std::int64_t>> contexts = {
+        {0, recent, v, touched == 0},
+        {1, std::min<std::int64_t>(Q(near / 3), 15), std::min<std::int64_t>(Q(before / 6), 13)},
+        {2, plane.row_classes[row], column, v},
+        {3, low_row, l},
+        {4, column, v},
+        {5, low_row, column}};
+    const std::vector<std::int64_t> features = {
+        256, 64 * wide - 512, 64 * spread_class - 512, 64 * Q(near) - 256, 64 * bend_class - 256, 128 * v - 256};
+    const auto bin = [&](std::int64_t number) {
+      std::vector<TextState*> states;
+      for (std::vector<std::int64_t> key : contexts) {
+        key.push_back(number);
+        states.push_back(&plane.states[key]);
+      }
+      const std::int64_t kind = std::min<std::int64_t>(number, 5);
+      return ReadMixed(in,
+                       {Find(plane.first, {kind, l}, Weights(p, kind, l)),
+                        Find(plane.second, {kind, activity}, Weights(p, kind, 1))},
+                       states, features);
+    };
+    if (!bin(0)) return 0;
+    const std::int64_t bend_context = bend_class > 0 ? Sign(bend) * std::min<std::int64_t>(bend_class, 8) : 0;
+    const bool negative = ReadMixed(in, {Find(plane.sign_first, v, {40 * 1024, 40 * 1024}), &plane.sign_second},
+                                    {&plane.sign_states[{0, bend_context, v}],
+                                     &plane.sign_states[{1, Sign(reference_sign), Sign(At(frame, p, i - 1, j)), l}]},
+                                    {});
+    std::uint32_t magnitude = 1;
+    while (magnitude < 15 && bin(magnitude)) ++magnitude;
+    if (magnitude == 15) {
+      std::uint32_t width = 0;
+      while (width < 20 && in.Bin(plane.escape[width])) ++width;
+      magnitude = 14 + (1u << width) + in.Raw(width);
+    }
+    const auto value = static_cast<std::int32_t>(magnitude);
+    return negative ? -value : value;
+  }
+
+  std::int64_t growth_;
+  bool predicts_planes_;
+  std::vector<FrameSlot> slots_;
+  std::vector<TextFrame> frames_, coefficients_;
   TextModel explicit_;
   std::array<TextModel, 2> count_;
   TextUe reference_;
   std::array<TextModel, 3> moves_;
   std::array<std::array<TextModel, 3>, 4> empty_;
   std::array<std::array<TextSe, 3>, 2> rigid_;
-  std::array<std::array<std::vector<TextCoefficient>, 3>, 4> coefficients_;
+  std::array<TextPlane, 4> planes_;
 };
 
 // --- Section 6.4 once more, from its text. ---------------------------------------------------------------------------
@@ -376,7 +580,7 @@ class TextStream {
  private:
   void ReadHeader(ByteReader& in) {
     EXPECT_EQ(in.U8(), 0);
-    EXPECT_EQ(in.U8(), 3);
+    EXPECT_EQ(in.U8(), 4);
     EXPECT_EQ(in.U8(), 0);  // reference_shape
     in.U8();                // position_bits
     growth_ = in.U8();
@@ -529,50 +733,12 @@ class TextStream {
     TextDecoder in(bytes);
     std::vector<std::uint32_t> patch_sizes;
     for (const Component& p : patches_) patch_sizes.push_back(p.count);
-    TextFrameReader syntax(counts_, detail_step_ > 0 ? patch_sizes : std::vector<std::uint32_t>(),
-                           correction_step_ > 0 ? vertices_ : 0);
-    const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
-    std::vector<TextFrame> coefficients;
+    TextFrameReader reader_of_frames(counts_, detail_step_ > 0 ? patch_sizes : std::vector<std::uint32_t>(),
+                                     correction_step_ > 0 ? vertices_ : 0, growth_, true);
     std::vector<Eigen::MatrixXd> shown(frames);
-    for (const FrameSlot& slot : structure) {
-      TextFrame frame = syntax.Read(in, slot);
-      std::int64_t step = 16;
-      for (std::uint32_t i = 0; i < slot.level && step < 4096; ++i) step = (step * growth_ + 32) / 64;
-      step = std::min<std::int64_t>(step, 4096);
-      const auto predict = [&](auto&& value) -> std::int64_t {
-        if (frame.references.empty()) return 0;
-        const std::int64_t a = value(coefficients.at(frame.references[0]));
-        if (frame.references.size() == 1) return a;
-        return (a + value(coefficients.at(frame.references[1])) + 1) >> 1;
-      };
-      const auto bend = [&](auto&& value) -> std::int64_t {  // of a frame with two references
-        const std::uint32_t a = frame.references[0], b = frame.references[1];
-        const std::int64_t d_a = structure[a].display, d_b = structure[b].display;
-        std::int64_t sum = 0;
-        for (std::size_t o = 0; o < coefficients.size(); ++o) {
-          const std::int64_t at = structure[o].display, x_a = value(coefficients[a]), x_b = value(coefficients[b]);
-          if (at == 2 * d_a - d_b) sum += 2 * x_a - x_b - value(coefficients[o]);
-          if (at == 2 * d_b - d_a) sum += 2 * x_b - x_a - value(coefficients[o]);
-        }
-        return sum;
-      };
-      for (std::size_t i = 0; i < 6; ++i) frame.rigid[i] += predict([&](const TextFrame& f) { return f.rigid[i]; });
-      for (std::size_t p = 0; p < 4; ++p) {
-        for (std::size_t i = 0; i < frame.planes[p].size(); ++i) {
-          for (std::size_t j = 0; j < frame.planes[p][i].size(); ++j) {
-            std::int32_t& value = frame.planes[p][i][j];
-            const auto at = [&](const TextFrame& f) { return std::int64_t{f.planes[p][i][j]}; };
-            std::int64_t prediction = p == 3 ? 0 : predict(at);
-            if (p < 2 && slot.level >= 3 && frame.references.size() == 2) {
-              const std::int64_t sum = at(coefficients[frame.references[0]]) + at(coefficients[frame.references[1]]);
-              prediction = (8 * sum + bend(at) + 8) >> 4;
-            }
-            value = static_cast<std::int32_t>(prediction + value * (p == 3 ? 16 : step));
-          }
-        }
-      }
-      coefficients.push_back(frame);
-      shown[slot.display] = Reconstruct(frame);
+    for (const FrameSlot& slot : GroupStructure(frames, pyramid)) {
+      reader_of_frames.Read(in, slot);
+      shown[slot.display] = Reconstruct(reader_of_frames.coefficients().back());
     }
     EXPECT_TRUE(in.AtEnd());
     frames_.insert(frames_.end(), shown.begin(), shown.end());

@@ -4,23 +4,11 @@
 #include <cstddef>
 #include <cstdlib>
 
-#include "format/activity.h"
-
 namespace sac {
-namespace {
-
-constexpr std::size_t kBands = 7;
-
-}  // namespace
-
 template <class Coder>
 FrameCoder<Coder>::FrameCoder(const SequenceHeader& header, const PlaneLayouts& layouts)
-    : layouts_(layouts), predictor_(header, layouts), zeros_(EmptyPlanes(layouts)) {
-  for (LevelModels& level : models_) {
-    for (std::size_t p = 0; p < kPlanes; ++p) {
-      if (layouts[p].size() > 0) level.planes[p].coefficients.resize(kActivities * kBands);
-    }
-  }
+    : header_(header), layouts_(layouts), predictor_(header, layouts), zeros_(EmptyPlanes(layouts)) {
+  for (std::size_t p = 0; p < kPlanes; ++p) planes_.emplace_back(p, layouts[p]);
 }
 
 // spec.md 6.2: a flag tells whether the references are those of the structure; if not they follow, each as its distance
@@ -48,44 +36,6 @@ bool FrameCoder<Coder>::CodeReferences(Coder& coder, const FrameSlot& slot, Fram
 }
 
 template <class Coder>
-bool FrameCoder<Coder>::CodeCoefficient(Coder& coder, CoefficientModels& models, std::int32_t& value) {
-  bool nonzero = value != 0;
-  coder.Bit(models.nonzero, nonzero);
-  if (!nonzero) {
-    value = 0;
-    return true;
-  }
-  std::uint32_t negative = value < 0;
-  coder.Raw(negative, 1);
-  std::int32_t magnitude = Coder::kDecodes ? 1 : std::abs(value);
-  std::size_t step = 0;
-  for (; step < models.unary.size(); ++step) {
-    bool more = magnitude > static_cast<std::int32_t>(step) + 1;
-    coder.Bit(models.unary[step], more);
-    if (!more) break;
-    if constexpr (Coder::kDecodes) ++magnitude;
-  }
-  if (step == models.unary.size()) {  // Exp-Golomb of what is over 15
-    std::uint32_t rest = static_cast<std::uint32_t>(magnitude) - 15 + 1;
-    std::size_t width = 0;
-    if constexpr (!Coder::kDecodes) {
-      while ((rest >> (width + 1)) != 0) ++width;
-    }
-    for (std::size_t i = 0; i < models.escape.size(); ++i) {
-      bool more = i < width;
-      coder.Bit(models.escape[i], more);
-      if (!more) break;
-      if constexpr (Coder::kDecodes) width = i + 1;
-    }
-    std::uint32_t low = rest & ((1u << width) - 1);
-    coder.Raw(low, static_cast<int>(width));
-    if constexpr (Coder::kDecodes) magnitude = static_cast<std::int32_t>(((1u << width) | low) - 1 + 15);
-  }
-  value = negative ? -magnitude : magnitude;
-  return magnitude <= kMaxResidual;
-}
-
-template <class Coder>
 std::span<const std::int32_t> FrameCoder<Coder>::ReferenceResiduals(const FrameSyntax& frame, std::size_t plane,
                                                                     std::size_t i) const {
   const auto& references = frame.slot.references;
@@ -93,41 +43,27 @@ std::span<const std::int32_t> FrameCoder<Coder>::ReferenceResiduals(const FrameS
 }
 
 template <class Coder>
-bool FrameCoder<Coder>::CodePlane(Coder& coder, PlaneModels& models, std::size_t plane, FrameSyntax& frame) {
+bool FrameCoder<Coder>::CodePlane(Coder& coder, BitModel& empty_model, std::size_t plane, FrameSyntax& frame) {
   PlaneValues& values = frame.planes[plane];
+  ResidualContexts& contexts = planes_[plane].contexts;
   bool empty = false;
   if constexpr (!Coder::kDecodes) {
     empty = std::all_of(values.begin(), values.end(), [](std::int32_t v) { return v == 0; });
   }
-  coder.Bit(models.empty, empty);
+  coder.Bit(empty_model, empty);
   if (empty) {
     std::fill(values.begin(), values.end(), 0);
-    return true;
-  }
-  const std::array references = {ReferenceResiduals(frame, plane, 0), ReferenceResiduals(frame, plane, 1)};
-  const std::size_t channels = layouts_[plane].channels;
-  const auto width = static_cast<std::ptrdiff_t>(channels);
-  const auto size = static_cast<std::ptrdiff_t>(values.size());
-  // Magnitude of one residual, bounded so that sums stay small; zero outside the plane.
-  const auto at = [size](std::span<const std::int32_t> p, std::ptrdiff_t i) -> std::int64_t {
-    return i < 0 || i >= size ? 0 : std::min(std::abs(p[static_cast<std::size_t>(i)]), 1 << 15);
-  };
-  std::ptrdiff_t i = 0;
-  for (const std::uint8_t band : layouts_[plane].bands) {
-    std::int64_t before = 0;  // sum over the channels before, same row
-    for (std::size_t c = 0; c < channels; ++c, ++i) {
-      std::int64_t s = 12 * at(values, i - width) + 6 * at(values, i - 2 * width) + 3 * at(values, i - 3 * width) +
-                       3 * at(values, i - 4 * width);
-      for (const auto& reference : references) {
-        s += 4 * at(reference, i) + 2 * at(reference, i - width) + 2 * at(reference, i + width);
-      }
-      if (c > 0) s += 24 * before / static_cast<std::int64_t>(c);
-      CoefficientModels& context = models.coefficients[ActivityClass(s) * kBands + band];
-      if (!CodeCoefficient(coder, context, values[static_cast<std::size_t>(i)])) return false;
-      before += at(values, i);
+  } else {
+    contexts.Start(frame.slot.level, LevelStep(header_, plane, frame.slot.level), plane,
+                   predictor_.References(frame.slot), ReferenceResiduals(frame, plane, 0),
+                   ReferenceResiduals(frame, plane, 1));
+    for (std::int32_t& value : values) {
+      if (!planes_[plane].Code(coder, contexts.Next(), value)) return false;
+      contexts.Put(value);
+      if (!coder.ok()) return false;
     }
-    if (!coder.ok()) return false;
   }
+  contexts.Finish(values);
   return true;
 }
 
@@ -163,7 +99,7 @@ bool FrameCoder<Coder>::Code(Coder& coder, const FrameSlot& slot, FrameSyntax& f
   account(parts.side);
   for (std::size_t p = 0; p < kPlanes; ++p) {
     frame.planes[p].resize(layouts_[p].size());
-    if (layouts_[p].size() > 0 && !CodePlane(coder, models.planes[p], p, frame)) return false;
+    if (layouts_[p].size() > 0 && !CodePlane(coder, models.empty[p], p, frame)) return false;
     account(parts.planes[p]);
   }
   coded_.push_back(frame);

@@ -8,6 +8,7 @@
 #include "format/frame_syntax.h"
 #include "format/integer_coder.h"
 #include "format/plane_layout.h"
+#include "format/plane_models.h"
 #include "format/prediction.h"
 #include "format/range_coder.h"
 #include "format/sequence_header.h"
@@ -36,29 +37,20 @@ class FrameCoder {
   std::vector<FrameCoefficients> TakeFrames() { return predictor_.TakeFrames(); }
 
  private:
-  struct CoefficientModels {
-    BitModel nonzero;
-    std::array<BitModel, 14> unary;
-    std::array<BitModel, 20> escape;
-  };
-  struct PlaneModels {
-    BitModel empty;
-    std::vector<CoefficientModels> coefficients;  // by context
-  };
   static constexpr std::size_t kLevels = 3;  // of a pyramid that have models of their own
   struct LevelModels {
     BitModel moves;
     std::array<SignedModels, 2> rigid;
-    std::array<PlaneModels, kPlanes> planes;
+    std::array<BitModel, kPlanes> empty;
   };
 
   bool CodeReferences(Coder& coder, const FrameSlot& slot, FrameSyntax& frame);
   bool CodeRigid(Coder& coder, LevelModels& models, std::array<std::int32_t, 6>& rigid);
-  bool CodeCoefficient(Coder& coder, CoefficientModels& models, std::int32_t& value);
   // Residuals of a plane of the frame's first (0) or second (1) reference, or the only one twice.
   std::span<const std::int32_t> ReferenceResiduals(const FrameSyntax& frame, std::size_t plane, std::size_t i) const;
-  bool CodePlane(Coder& coder, PlaneModels& models, std::size_t plane, FrameSyntax& frame);
+  bool CodePlane(Coder& coder, BitModel& empty_model, std::size_t plane, FrameSyntax& frame);
 
+  SequenceHeader header_;
   PlaneLayouts layouts_;
   Predictor predictor_;
   std::vector<FrameSyntax> coded_;
@@ -67,6 +59,7 @@ class FrameCoder {
   std::array<BitModel, 2> reference_count_models_;
   UnsignedModels reference_models_;
   std::array<LevelModels, kLevels> models_;
+  std::vector<PlaneModels> planes_;
 };
 
 extern template class FrameCoder<RangeEncoder>;

@@ -1,8 +1,9 @@
 #include "format/harmonic_order.h"
 
 #include <algorithm>
-#include <bit>
 #include <cstddef>
+
+#include "format/logistic.h"
 
 namespace sac {
 
@@ -18,9 +19,8 @@ std::vector<HarmonicIndex> HarmonicOrder(std::span<const std::uint32_t> counts) 
   return order;
 }
 
-std::uint8_t HarmonicBand(std::uint32_t k, int octaves_per_band) {
-  const int octave = std::bit_width(k + 1) - 1;
-  return static_cast<std::uint8_t>(std::min(octave / octaves_per_band, 6));
+std::uint8_t HarmonicClass(std::uint32_t k) {
+  return static_cast<std::uint8_t>(std::min<std::uint32_t>(HalfOctave(k + 1), 23));
 }
 
 }  // namespace sac

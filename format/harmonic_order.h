@@ -16,7 +16,7 @@ struct HarmonicIndex {
 // by component (spec.md 6.3). It is made of integers alone, so that no float decides what a bit means.
 std::vector<HarmonicIndex> HarmonicOrder(std::span<const std::uint32_t> counts);
 
-// The band of a harmonic for the contexts, 0..6: a number of octaves of k + 1.
-std::uint8_t HarmonicBand(std::uint32_t k, int octaves_per_band);
+// The class of a harmonic for the contexts, 1..23: in half octaves of k + 1 (spec.md 7.4).
+std::uint8_t HarmonicClass(std::uint32_t k);
 
 }  // namespace sac

@@ -5,10 +5,10 @@
 namespace sac {
 namespace {
 
-std::vector<std::uint8_t> Bands(std::span<const std::uint32_t> counts, int octaves_per_band) {
-  std::vector<std::uint8_t> bands;
-  for (const HarmonicIndex& index : HarmonicOrder(counts)) bands.push_back(HarmonicBand(index.k, octaves_per_band));
-  return bands;
+std::vector<std::uint8_t> RowClasses(std::span<const std::uint32_t> counts) {
+  std::vector<std::uint8_t> classes;
+  for (const HarmonicIndex& index : HarmonicOrder(counts)) classes.push_back(HarmonicClass(index.k));
+  return classes;
 }
 
 }  // namespace
@@ -16,12 +16,12 @@ std::vector<std::uint8_t> Bands(std::span<const std::uint32_t> counts, int octav
 PlaneLayouts LayOutPlanes(const SequenceHeader& header, std::span<const std::uint32_t> harmonics,
                           std::span<const std::uint32_t> patches) {
   PlaneLayouts layouts;
-  layouts[kMotion] = {9, Bands(harmonics, 2)};
-  layouts[kDisplacement] = {3, layouts[kMotion].bands};
+  layouts[kMotion] = {9, RowClasses(harmonics)};
+  layouts[kDisplacement] = {3, layouts[kMotion].row_classes};
   layouts[kDetail].channels = 3;
   layouts[kCorrection].channels = 3;
-  if (header.detail_step > 0) layouts[kDetail].bands = Bands(patches, 1);
-  if (header.correction_step > 0) layouts[kCorrection].bands.assign(header.vertices, 0);
+  if (header.detail_step > 0) layouts[kDetail].row_classes = RowClasses(patches);
+  if (header.correction_step > 0) layouts[kCorrection].row_classes.assign(header.vertices, HarmonicClass(0));
   return layouts;
 }
 

@@ -23,9 +23,9 @@ inline constexpr std::array<const char*, kPlanes> kPlaneNames = {"motion", "disp
 // The size of a plane, and what contexts know of its rows. A plane's coefficients are stored row by row.
 struct PlaneLayout {
   std::size_t channels = 0;
-  std::vector<std::uint8_t> bands;  // of each row, 0..6; no rows when the stream has no such plane
+  std::vector<std::uint8_t> row_classes;  // of each row, 1..23; no rows when the stream has no such plane
 
-  std::size_t size() const { return channels * bands.size(); }
+  std::size_t size() const { return channels * row_classes.size(); }
 };
 using PlaneLayouts = std::array<PlaneLayout, kPlanes>;
 

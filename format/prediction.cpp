@@ -55,12 +55,10 @@ const FrameCoefficients* Predictor::FrameAt(std::int64_t display) const {
 ReferenceFrames Predictor::References(const FrameSlot& slot) const {
   if (slot.references.empty()) return {};
   const std::uint32_t a = slot.references[0], b = slot.references.back();
-  ReferenceFrames frames{&frames_[a], &frames_[b], nullptr, nullptr};
-  if (slot.references.size() == 2) {
-    const std::int64_t from = displays_[a], to = displays_[b];
-    frames.before = FrameAt(2 * from - to);
-    frames.after = FrameAt(2 * to - from);
-  }
+  ReferenceFrames frames{&frames_[a], &frames_[b], nullptr, nullptr, slot.references.size() == 1};
+  const std::int64_t from = displays_[a], to = frames.one ? slot.display : displays_[b];
+  frames.before = FrameAt(2 * from - to);
+  if (!frames.one) frames.after = FrameAt(2 * to - from);
   return frames;
 }
 

@@ -31,10 +31,12 @@ struct ReferenceFrames {
   const FrameCoefficients* second = nullptr;
   const FrameCoefficients* before = nullptr;  // as far from `first` as the other end, on the other side
   const FrameCoefficients* after = nullptr;   // likewise from `second`
+  bool one = false;                           // and `before` is as far from the one as the frame itself
 
   // Where the course of a plane's coefficient i bends to between two references, in sixteenths of the coefficient;
-  // each frame beyond adds half of a parabola's.
+  // each frame beyond adds half of a parabola's. From one reference, half of how far it came.
   std::int64_t Bend(std::size_t plane, std::size_t i) const {
+    if (one) return before ? 8 * (std::int64_t{first->planes[plane][i]} - before->planes[plane][i]) : 0;
     const std::int64_t a = first->planes[plane][i], b = second->planes[plane][i];
     return (before ? 2 * a - b - before->planes[plane][i] : 0) + (after ? 2 * b - a - after->planes[plane][i] : 0);
   }

@@ -48,24 +48,24 @@ void RangeEncoder::Narrow(std::uint32_t offset, std::uint32_t range) {
   }
 }
 
-void RangeEncoder::Bit(BitModel& model, bool& bit) {
-  const std::uint32_t bound = (range_ >> 15) * model.probability();
+void RangeEncoder::Split(std::uint32_t bound, bool bit) {
   if (bit) {
     Narrow(0, bound);
   } else {
     Narrow(bound, range_ - bound);
   }
+}
+
+void RangeEncoder::Bit(BitModel& model, bool& bit) {
+  Split((range_ >> 15) * model.probability(), bit);
   model.Update(bit);
 }
 
+void RangeEncoder::Decide(std::uint32_t p, bool& bit) { Split((range_ >> 16) * p, bit); }
+
 void RangeEncoder::Raw(std::uint32_t& value, int count) {
   for (int i = count - 1; i >= 0; --i) {
-    const std::uint32_t half = range_ >> 1;
-    if ((value >> i) & 1) {
-      Narrow(0, half);
-    } else {
-      Narrow(half, range_ - half);
-    }
+    Split(range_ >> 1, (value >> i) & 1);
   }
 }
 
@@ -96,9 +96,8 @@ void RangeDecoder::Normalize() {
   }
 }
 
-void RangeDecoder::Bit(BitModel& model, bool& bit) {
-  const std::uint32_t bound = (range_ >> 15) * model.probability();
-  bit = code_ < bound;
+bool RangeDecoder::Split(std::uint32_t bound) {
+  const bool bit = code_ < bound;
   if (bit) {
     range_ = bound;
   } else {
@@ -106,22 +105,20 @@ void RangeDecoder::Bit(BitModel& model, bool& bit) {
     range_ -= bound;
   }
   Normalize();
+  return bit;
+}
+
+void RangeDecoder::Bit(BitModel& model, bool& bit) {
+  bit = Split((range_ >> 15) * model.probability());
   model.Update(bit);
 }
+
+void RangeDecoder::Decide(std::uint32_t p, bool& bit) { bit = Split((range_ >> 16) * p); }
 
 void RangeDecoder::Raw(std::uint32_t& value, int count) {
   value = 0;
   for (int i = 0; i < count; ++i) {
-    const std::uint32_t half = range_ >> 1;
-    const bool bit = code_ < half;
-    if (bit) {
-      range_ = half;
-    } else {
-      code_ -= half;
-      range_ -= half;
-    }
-    Normalize();
-    value = (value << 1) | static_cast<std::uint32_t>(bit);
+    value = (value << 1) | static_cast<std::uint32_t>(Split(range_ >> 1));
   }
 }
 

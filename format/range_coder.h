@@ -31,6 +31,8 @@ class RangeEncoder {
   static constexpr bool kDecodes = false;
 
   void Bit(BitModel& model, bool& bit);
+  // A bin that is 1 with a probability of `p` / 65536, from 1 to 65535.
+  void Decide(std::uint32_t p, bool& bit);
   // `count` bits of equal probability, most significant first.
   void Raw(std::uint32_t& value, int count);
   bool ok() const { return true; }
@@ -44,6 +46,7 @@ class RangeEncoder {
 
  private:
   void Narrow(std::uint32_t offset, std::uint32_t range);
+  void Split(std::uint32_t bound, bool bit);
 
   std::vector<std::uint8_t> bytes_;
   std::uint32_t low_ = 0;
@@ -59,6 +62,7 @@ class RangeDecoder {
   explicit RangeDecoder(std::span<const std::uint8_t> bytes);
 
   void Bit(BitModel& model, bool& bit);
+  void Decide(std::uint32_t p, bool& bit);
   void Raw(std::uint32_t& value, int count);
   bool ok() const { return position_ <= bytes_.size() + 4; }
   // Whether the code ended where the bytes do: no byte was left unread.
@@ -70,6 +74,7 @@ class RangeDecoder {
     return i < bytes_.size() ? bytes_[i] : 0;
   }
   void Normalize();
+  bool Split(std::uint32_t bound);
 
   std::span<const std::uint8_t> bytes_;
   std::size_t position_ = 0;

@@ -36,14 +36,10 @@ TEST(HarmonicOrder, NamesEveryHarmonicOnce) {
   for (const auto& [c, k] : order) EXPECT_LT(k, counts[c]);
 }
 
-TEST(HarmonicBand, CountsOctaves) {
-  const std::uint32_t k[] = {0, 1, 2, 3, 6, 7, 14, 15, 30, 31, 62, 63, 126, 4094, 4095, 0xfffffffe};
-  const int single[] = {0, 1, 1, 2, 2, 3, 3, 4, 4, 5, 5, 6, 6, 6, 6, 6};
-  const int pairs[] = {0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 3, 3, 5, 6, 6};
-  for (std::size_t i = 0; i < std::size(k); ++i) {
-    EXPECT_EQ(HarmonicBand(k[i], 1), single[i]) << k[i];
-    EXPECT_EQ(HarmonicBand(k[i], 2), pairs[i]) << k[i];
-  }
+TEST(HarmonicClass, CountsHalfOctaves) {
+  const std::uint32_t k[] = {0, 1, 2, 3, 4, 5, 6, 7, 10, 11, 14, 15, 4094, 4095, 0xfffffffe};
+  const int classes[] = {1, 2, 3, 4, 4, 5, 5, 6, 6, 7, 7, 8, 23, 23, 23};
+  for (std::size_t i = 0; i < std::size(k); ++i) EXPECT_EQ(HarmonicClass(k[i]), classes[i]) << k[i];
 }
 
 TEST(HarmonicOrder, OfHugeCountsDoesNotOverflow) {

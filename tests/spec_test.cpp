@@ -30,8 +30,10 @@
 #include "format/group_structure.h"
 #include "format/harmonic_order.h"
 #include "format/integer_coder.h"
+#include "format/logistic.h"
 #include "format/packet.h"
 #include "format/plane_layout.h"
+#include "format/plane_models.h"
 #include "format/prediction.h"
 #include "format/range_coder.h"
 
@@ -39,7 +41,7 @@ namespace sac {
 namespace {
 
 // The examples that a test below runs.
-const std::set<std::string> kRun = {"bands",
+const std::set<std::string> kRun = {"classes",
                                     "coefficients",
                                     "crc32",
                                     "deformation-gradient",
@@ -51,14 +53,16 @@ const std::set<std::string> kRun = {"bands",
                                     "integers",
                                     "level-steps",
                                     "level-steps-capped",
+                                    "logistic",
                                     "packet",
                                     "patches",
                                     "range-coder",
                                     "reduced",
+                                    "state",
                                     "stream",
                                     "stream-positions",
-                                    "thresholds",
-                                    "varint"};
+                                    "varint",
+                                    "weights"};
 
 TEST(Spec, HasNoOtherExamples) {
   std::set<std::string> ids;
@@ -208,33 +212,63 @@ TEST(Spec, TextReadsIntegers) {
   }
 }
 
-TEST(Spec, TextReadsCoefficients) {
+// A plane of one row, the displacement plane of a stream with one harmonic.
+SequenceHeader OneHarmonic() {
+  SequenceHeader header;
+  header.vertices = 1;
+  header.harmonics = 1;
+  return header;
+}
+
+TEST(Spec, Coefficients) {
+  const std::array<std::uint32_t, 1> one = {1};
+  const PlaneLayouts layouts = LayOutPlanes(OneHarmonic(), one, one);
+  const std::vector<std::int32_t> zeros(layouts[kDisplacement].size());
   for (const std::string& line : Example("coefficients")) {
     const auto [left, hex] = Equation(line);
-    const Bytes bytes = Unhex(hex);
-    TextDecoder in(bytes);
-    TextCoefficient models;
-    EXPECT_EQ(ReadCoefficient(in, models), std::stoi(left));
-    EXPECT_TRUE(in.AtEnd()) << line;
+    PlaneModels models(kDisplacement, layouts[kDisplacement]);
+    models.contexts.Start(0, 16, kDisplacement, ReferenceFrames(), zeros, zeros);
+    RangeEncoder coder;
+    std::int32_t value = std::stoi(left);
+    EXPECT_TRUE(models.Code(coder, models.contexts.Next(), value));
+    EXPECT_EQ(Hex(coder.Finish()), hex) << line;
   }
 }
 
-TEST(Spec, Bands) {
-  const auto k = Row<std::uint32_t>("bands", "k");
-  const auto component = Row<std::uint32_t>("bands", "component"), patch = Row<std::uint32_t>("bands", "patch");
-  ASSERT_EQ(k.size(), component.size());
-  ASSERT_EQ(k.size(), patch.size());
-  SequenceHeader header;
-  header.vertices = 1;
-  header.detail_step = header.correction_step = 1;
-  for (std::size_t i = 0; i < k.size(); ++i) {
-    const std::array<std::uint32_t, 1> count = {k[i] + 1};
-    const PlaneLayouts layouts = LayOutPlanes(header, count, count);
-    EXPECT_EQ(layouts[kMotion].bands.back(), component[i]) << k[i];
-    EXPECT_EQ(layouts[kDisplacement].bands.back(), component[i]) << k[i];
-    EXPECT_EQ(layouts[kDetail].bands.back(), patch[i]) << k[i];
-    EXPECT_EQ(layouts[kCorrection].bands.back(), 0u);
+TEST(Spec, Logistic) {
+  std::vector<std::int32_t> curve;
+  for (const std::string& line : Example("logistic")) {
+    for (const auto x : Numbers<std::int32_t>(Words(line), 0)) curve.push_back(x);
   }
+  EXPECT_TRUE(std::equal(curve.begin(), curve.end(), kLogisticCurve.begin(), kLogisticCurve.end()));
+  for (std::int32_t x = -kMaxLogit; x <= kMaxLogit; ++x) EXPECT_EQ(Probability(x), TextSquash(x));
+  for (std::uint32_t p = 0; p < 65536; ++p) ASSERT_EQ(Logit(p), TextStretch(p));
+}
+
+TEST(Spec, State) {
+  const auto bins = Row<int>("state", "bins");
+  const auto probabilities = Row<std::int64_t>("state", "probabilities"), inputs = Row<std::int64_t>("state", "inputs");
+  AdaptiveBit state;
+  TextState text;
+  for (std::size_t i = 0; i < bins.size(); ++i) {
+    EXPECT_EQ(text.p, probabilities.at(i));
+    EXPECT_EQ(text.Input(), inputs.at(i));
+    EXPECT_EQ(state.logit(), inputs.at(i));
+    state.Update(bins[i] != 0);
+    text.Update(bins[i]);
+  }
+}
+
+TEST(Spec, Classes) {
+  const auto x = Row<std::uint32_t>("classes", "x"), q = Row<std::uint32_t>("classes", "Q");
+  ASSERT_EQ(x.size(), q.size());
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    EXPECT_EQ(HalfOctave(x[i]), q[i]);
+    EXPECT_EQ(Q(x[i]), q[i]);
+  }
+  EXPECT_EQ(HarmonicClass(0), 1);
+  EXPECT_EQ(HarmonicClass(6), 5);
+  EXPECT_EQ(HarmonicClass(8000), 23);
 }
 
 TEST(Spec, TextReadsFrames) {
@@ -258,6 +292,7 @@ TEST(Spec, TextReadsFrames) {
     header.vertices = std::accumulate(patches.begin(), patches.end(), 0u);
     header.detail_step = trial % 2 ? 1 : 0;
     header.correction_step = trial % 3 ? 1 : 0;
+    header.level_growth = static_cast<std::uint8_t>(64 + random() % 65);
     const PlaneLayouts layouts = LayOutPlanes(header, harmonics, patches);
     const std::vector<FrameSlot> structure = GroupStructure(1 + random() % 20, 1 + random() % 9);
     RangeEncoder coder;
@@ -284,7 +319,8 @@ TEST(Spec, TextReadsFrames) {
     const Bytes bytes = coder.Finish();
     TextDecoder in(bytes);
     if (header.detail_step == 0) patches.clear();
-    TextFrameReader reader(harmonics, patches, header.correction_step > 0 ? header.vertices : 0);
+    TextFrameReader reader(harmonics, patches, header.correction_step > 0 ? header.vertices : 0, header.level_growth,
+                           true);
     for (std::size_t f = 0; f < structure.size(); ++f) {
       const TextFrame& frame = reader.Read(in, structure[f]);
       EXPECT_EQ(frame.references, frames[f].slot.references);

@@ -1,0 +1,7 @@
+#include "format/logistic.h"
+
+namespace sac {
+
+constexpr LogisticTables kLogisticTables;
+
+}  // namespace sac

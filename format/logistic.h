@@ -1,0 +1,58 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <cstdint>
+
+namespace sac {
+
+// The scale on which predictions are mixed (spec.md 7.4): a logit is ln(p / (1 - p)) in 1/256, a probability is in
+// 1/65536. Integers alone, so that every decoder mixes alike.
+inline constexpr std::int32_t kMaxLogit = 2816;
+
+// The probability of logit 128 k.
+inline constexpr std::array<std::int32_t, 23> kLogisticCurve = {32768, 40793, 47911, 53581, 57724, 60565, 62428, 63615,
+                                                                64357, 64816, 65097, 65269, 65374, 65438, 65476, 65500,
+                                                                65514, 65523, 65528, 65531, 65533, 65534, 65535};
+
+constexpr std::int32_t InterpolatedCurve(std::int32_t logit) {
+  if (logit < 0) return 65536 - InterpolatedCurve(-logit);
+  const auto k = static_cast<std::size_t>(logit / 128);
+  if (k + 1 == kLogisticCurve.size()) return kLogisticCurve[k];
+  return kLogisticCurve[k] + ((kLogisticCurve[k + 1] - kLogisticCurve[k]) * (logit % 128) + 64) / 128;
+}
+
+struct LogisticTables {
+  std::array<std::uint16_t, 2 * kMaxLogit + 1> probability{};
+  std::array<std::int16_t, 4096> logit{};
+
+  constexpr LogisticTables() {
+    for (std::int32_t x = -kMaxLogit; x <= kMaxLogit; ++x) {
+      probability[static_cast<std::size_t>(x + kMaxLogit)] = static_cast<std::uint16_t>(InterpolatedCurve(x));
+    }
+    std::int32_t x = -kMaxLogit;
+    for (std::size_t i = 0; i < logit.size(); ++i) {
+      while (x < kMaxLogit && probability[static_cast<std::size_t>(x + kMaxLogit)] < 16 * i + 8) ++x;
+      logit[i] = static_cast<std::int16_t>(x);
+    }
+  }
+};
+extern const LogisticTables kLogisticTables;
+
+inline std::int32_t Probability(std::int32_t logit) {
+  return kLogisticTables.probability[static_cast<std::size_t>(std::clamp(logit, -kMaxLogit, kMaxLogit) + kMaxLogit)];
+}
+
+// The least logit whose probability is not below that of the middle of p's sixteen.
+inline std::int32_t Logit(std::uint32_t p) { return kLogisticTables.logit[p >> 4]; }
+
+// Two classes an octave: 0, 1, 2, 3, then 4 for 4 and 5, 5 for 6 and 7, 6 for 8 to 11 and so on.
+inline std::uint32_t HalfOctave(std::uint32_t x) {
+  if (x < 4) return x;
+  const int octave = std::bit_width(x) - 1;
+  return 2 * static_cast<std::uint32_t>(octave) + ((x >> (octave - 1)) & 1);
+}
+
+}  // namespace sac

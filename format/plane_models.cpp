@@ -1,0 +1,119 @@
+#include "format/plane_models.h"
+
+#include <algorithm>
+#include <cstdlib>
+
+#include "format/frame_syntax.h"
+
+namespace sac {
+namespace {
+
+// What the mixers begin with, in 1/64: learnt from clips that are not among those reported (docs/decisions.md).
+using Weights = std::array<std::int32_t, ResidualContext::kStates + ResidualContext::kFeatures>;
+struct PlaneWeights {
+  std::array<Weights, 3> nonzero;  // by level
+  Weights second;                  // whether the magnitude is above 1
+  Weights further;                 // above 2 and so on
+};
+constexpr PlaneWeights kMotionWeights = {{{{14, 16, 20, 25, 27, 30, 41, 37, -34, 18, 50, -40},
+                                           {23, 22, 18, 9, 17, 32, 113, 26, 0, -6, 64, -74},
+                                           {26, 21, -1, 6, 12, 66, 158, -3, 4, -11, 72, -73}}},
+                                         {19, 14, 9, 15, 4, 14, -6, 16, 3, 8, 32, -32},
+                                         {8, 2, -4, 14, 6, 18, -2, 16, 8, 4, 12, -55}};
+constexpr PlaneWeights kDisplacementWeights = {{{{9, 7, 20, 12, 9, 15, 12, 19, -21, 10, 39, -11},
+                                                 {26, 12, 16, 14, 7, 17, 42, 13, 8, 3, 34, -22},
+                                                 {36, 11, 9, 12, 11, 27, 101, 3, 1, 6, 19, -34}}},
+                                               {22, 14, 21, 8, 2, 7, -20, 20, -8, 2, 13, -30},
+                                               {12, 9, 14, 6, -8, 1, -23, 26, -5, -7, 6, -42}};
+constexpr PlaneWeights kDetailWeights = {{{{21, 21, 29, -12, -14, 8, 55, 38, 13, -6, 43, -53},
+                                           {42, 13, 16, -7, -13, 11, 51, 7, 30, -11, 47, -55},
+                                           {40, 22, 8, 2, -7, 5, 56, 2, 15, 13, 20, -13}}},
+                                         {45, 27, 2, 5, 10, 1, 12, 8, 5, -1, 25, -11},
+                                         {31, 16, 5, 5, -11, 5, -30, 13, 6, 1, 19, -17}};
+constexpr std::array<const PlaneWeights*, kPlanes> kWeights = {&kMotionWeights, &kDisplacementWeights, &kDetailWeights,
+                                                               &kDetailWeights};
+constexpr std::int32_t kWeightUnit = 1024;
+constexpr std::int32_t kSignWeight = 40;
+
+Weights Scaled(Weights weights) {
+  for (std::int32_t& w : weights) w *= kWeightUnit;
+  return weights;
+}
+
+}  // namespace
+
+PlaneModels::PlaneModels(std::size_t plane, const PlaneLayout& layout)
+    : contexts(layout), sign_(SignMixer::Inputs{kSignWeight * kWeightUnit, kSignWeight * kWeightUnit}) {
+  for (std::size_t i = 0; i < states_.size(); ++i) states_[i].resize(contexts.sizes()[i]);
+  for (std::size_t i = 0; i < sign_states_.size(); ++i) sign_states_[i].resize(ResidualContexts::kSignContexts[i]);
+  const PlaneWeights& weights = *kWeights[plane];
+  for (std::size_t kind = 0; kind < kKinds; ++kind) {
+    const auto at_level = [&](std::size_t level) {
+      return ResidualMixer(Scaled(kind == 0 ? weights.nonzero[level] : kind == 1 ? weights.second : weights.further));
+    };
+    for (std::size_t level = 0; level < ResidualContexts::kCoarseLevels; ++level) by_level_.push_back(at_level(level));
+    by_activity_.insert(by_activity_.end(), ResidualContexts::kActivities, at_level(1));
+  }
+  sign_by_level_.assign(ResidualContexts::kLevels, sign_);
+}
+
+template <class Coder>
+void PlaneModels::CodeBin(Coder& coder, const ResidualContext& context, std::size_t bin, bool& value) {
+  const std::size_t kind = std::min(bin, kKinds - 1);
+  std::array<AdaptiveBit*, ResidualContext::kStates> states;
+  for (std::size_t i = 0; i < states.size(); ++i) states[i] = &states_[i][context.states[i]][bin];
+  ResidualMixer::Inputs inputs;
+  std::copy(context.features.begin(), context.features.end(), inputs.begin() + states.size());
+  CodeMixed(coder, by_level_[kind * ResidualContexts::kCoarseLevels + context.coarse_level],
+            by_activity_[kind * ResidualContexts::kActivities + context.activity], inputs, states, value);
+}
+
+template <class Coder>
+void PlaneModels::CodeSign(Coder& coder, const ResidualContext& context, bool& negative) {
+  const std::array states = {&sign_states_[0][context.sign_states[0]], &sign_states_[1][context.sign_states[1]]};
+  SignMixer::Inputs inputs;
+  CodeMixed(coder, sign_by_level_[context.level], sign_, inputs, states, negative);
+}
+
+template <class Coder>
+bool PlaneModels::Code(Coder& coder, const ResidualContext& context, std::int32_t& value) {
+  bool nonzero = value != 0;
+  CodeBin(coder, context, 0, nonzero);
+  if (!nonzero) {
+    value = 0;
+    return true;
+  }
+  bool negative = value < 0;
+  CodeSign(coder, context, negative);
+  std::int32_t magnitude = Coder::kDecodes ? 1 : std::abs(value);
+  std::size_t step = 0;
+  for (; step < kUnary; ++step) {
+    bool more = magnitude > static_cast<std::int32_t>(step) + 1;
+    CodeBin(coder, context, step + 1, more);
+    if (!more) break;
+    if constexpr (Coder::kDecodes) ++magnitude;
+  }
+  if (step == kUnary) {  // Exp-Golomb of what is over 15
+    std::uint32_t rest = static_cast<std::uint32_t>(magnitude) - 15 + 1;
+    std::size_t width = 0;
+    if constexpr (!Coder::kDecodes) {
+      while ((rest >> (width + 1)) != 0) ++width;
+    }
+    for (std::size_t i = 0; i < escape_.size(); ++i) {
+      bool more = i < width;
+      coder.Bit(escape_[i], more);
+      if (!more) break;
+      if constexpr (Coder::kDecodes) width = i + 1;
+    }
+    std::uint32_t low = rest & ((1u << width) - 1);
+    coder.Raw(low, static_cast<int>(width));
+    if constexpr (Coder::kDecodes) magnitude = static_cast<std::int32_t>(((1u << width) | low) - 1 + 15);
+  }
+  value = negative ? -magnitude : magnitude;
+  return magnitude <= kMaxResidual;
+}
+
+template bool PlaneModels::Code(RangeEncoder&, const ResidualContext&, std::int32_t&);
+template bool PlaneModels::Code(RangeDecoder&, const ResidualContext&, std::int32_t&);
+
+}  // namespace sac

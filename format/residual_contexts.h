@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "format/plane_layout.h"
+#include "format/prediction.h"
+
+namespace sac {
+
+// What the bins of one residual are predicted from (spec.md 7.4).
+struct ResidualContext {
+  static constexpr std::size_t kStates = 6, kFeatures = 6;
+
+  std::array<std::size_t, kStates> states;       // the context of each kind
+  std::array<std::int32_t, kFeatures> features;  // on the scale of logits
+  std::size_t level, coarse_level;               // at most 4, 2
+  std::size_t activity;                          // 0..23
+  std::array<std::size_t, 2> sign_states;        // the contexts of the sign
+};
+
+// What is known of the residuals of a plane before each of them is coded, through the frames of a group.
+class ResidualContexts {
+ public:
+  static constexpr std::size_t kActivities = 24;
+  static constexpr std::size_t kLevels = 5, kCoarseLevels = 3;
+  static constexpr std::array<std::size_t, 2> kSignContexts = {17 * kLevels, 9 * kCoarseLevels};
+
+  explicit ResidualContexts(const PlaneLayout& layout);
+
+  // How many contexts of each kind there are.
+  const std::array<std::size_t, ResidualContext::kStates>& sizes() const { return sizes_; }
+
+  // Begins a frame of a level and its step. `references` hold the coefficients of `plane`, `first` and `second` the
+  // residuals of its references, or zeros.
+  void Start(std::uint32_t level, std::int32_t step, std::size_t plane, const ReferenceFrames& references,
+             std::span<const std::int32_t> first, std::span<const std::int32_t> second);
+  // Of the next residual, in order.
+  ResidualContext Next();
+  // What it turned out to be.
+  void Put(std::int32_t residual);
+  // Ends the frame, whose residuals are `values`.
+  void Finish(std::span<const std::int32_t> values);
+
+ private:
+  // Of one place in the plane, known before the frame's residuals are.
+  struct Place {
+    std::uint32_t around = 0;         // the references' magnitudes here and in the rows beside
+    std::uint8_t recent = 0;          // classes of magnitudes of frames before: here,
+    std::uint8_t recent_around = 0;   // and with the rows beside
+    std::uint8_t spread = 0;          // class of the difference of the references' coefficients
+    std::uint8_t bend = 0;            // class of the bend
+    std::uint8_t bend_sign = 0;       // context of the sign
+    std::uint8_t reference_sign = 0;  // 0..2
+    bool touched = false;             // whether a reference has a residual here
+  };
+
+  PlaneLayout layout_;
+  std::size_t channels_;
+  std::array<std::size_t, ResidualContext::kStates> sizes_;
+  std::size_t level_ = 0, coarse_level_ = 0;
+  std::int32_t step_ = 1;
+  std::vector<Place> places_;
+  std::vector<std::int32_t> recent_;       // mean magnitude of frames before, in 1/64 of a step of level 0
+  std::vector<std::uint32_t> magnitudes_;  // of this frame, after four rows of zeros
+  std::vector<std::int8_t> signs_;         // of this frame, after a row of zeros
+  std::size_t next_ = 0;
+  std::uint32_t before_ = 0;  // sum of magnitudes over the channels before in the row
+};
+
+}  // namespace sac
