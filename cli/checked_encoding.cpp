@@ -6,6 +6,7 @@
 #include "cli/frame_rate.h"
 #include "cli/progress.h"
 #include "cli/vertex_order.h"
+#include "codec/encode/error_bound.h"
 
 namespace sac {
 
@@ -23,6 +24,10 @@ Status CheckedEncoding::Open() {
     const FrameRate rate = NearestFrameRate(*input_->fps());
     encoder.frame_rate_numerator = rate.numerator;
     encoder.frame_rate_denominator = rate.denominator;
+  }
+  if (settings_.max_error) {
+    encoder.max_error = settings_.max_error->value;
+    if (settings_.max_error->in_diagonals) *encoder.max_error *= BoxDiagonal(input_->mesh().positions);
   }
   // The outputs before the harmonics, which take long.
   SAC_RETURN_IF_ERROR(stream_.Open(settings_.output));

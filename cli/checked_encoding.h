@@ -3,11 +3,13 @@
 #include <cstdint>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "cli/clip_input.h"
+#include "cli/error_option.h"
 #include "cli/output_file.h"
 #include "codec/encode/encoder.h"
 #include "format/status.h"
@@ -25,6 +27,7 @@ class CheckedEncoding {
     std::string order_map;            // where the order of the vertices goes; empty: nowhere
     // Without a frame rate that of the input is taken.
     EncoderSettings encoder;
+    std::optional<ErrorLength> max_error;  // becomes the encoder's
   };
 
   explicit CheckedEncoding(const Settings& settings) : settings_(settings) {}

@@ -12,6 +12,7 @@
 #include "cli/checked_encoding.h"
 #include "cli/commands.h"
 #include "cli/distortion_report.h"
+#include "cli/error_option.h"
 #include "cli/frame_rate.h"
 #include "cli/mesh_file.h"
 #include "cli/number_option.h"
@@ -21,7 +22,6 @@ namespace sac {
 namespace {
 
 constexpr double kLeastStep = 1e-9, kLargestStep = 1e9;
-constexpr double kLeastError = 1e-30, kLargestError = 1e30;  // model units
 
 struct EncodeOptions {
   CheckedEncoding::Settings settings;
@@ -169,8 +169,7 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
             "quantizer step of displacement, as a fraction of the first frame's RMS radius [from the quality]");
   AddNumber(app, "--detail-step", encoder.detail_step, 0.0, kLargestStep,
             "quantizer step of local detail, as a fraction of the RMS radius; 0 for none [from the quality]");
-  AddNumber(app, "--max-error", encoder.max_error, kLeastError, kLargestError,
-            "no vertex of any frame is farther off than this, model units [no bound]");
+  AddMaxError(app, o.settings.max_error);
   AddNumber(
       app, "--position-bits", encoder.position_bits, 1, 24,
       "log2 of the first frame's extent in steps, at edges of median length; may be a fraction [from the quality]");

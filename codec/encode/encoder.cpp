@@ -4,9 +4,11 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <sstream>
 #include <string>
 #include <utility>
 
+#include "codec/encode/error_bound.h"
 #include "codec/encode/group_encoder.h"
 #include "codec/encode/i_frame_encoder.h"
 #include "codec/encode/quality.h"
@@ -134,16 +136,6 @@ Status ChooseGrid(const Mesh& mesh, double bits, bool by_edges, SequenceHeader& 
   return Status::Ok();
 }
 
-// How far a bound on the error must stay below what is asked: decoded positions are rounded to floats, and computed
-// alike to 1e-9 of the shape only. Twice, because later frames may be farther from the origin than the first.
-double RoundingMargin(const Positions& positions) {
-  double largest = 0;
-  for (const Vec3f& p : positions) {
-    for (const float x : p) largest = std::max(largest, std::abs(static_cast<double>(x)));
-  }
-  return 2 * std::sqrt(3.0) * largest * 0x1p-24;
-}
-
 double RmsRadius(const Positions& positions) {
   std::array<double, 3> sum{};
   double squares = 0;
@@ -210,32 +202,37 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   SAC_RETURN_IF_ERROR(CheckMesh(first));
   SAC_RETURN_IF_ERROR(CheckFinite(first.positions));
   settings_ = settings;
-  const QualitySettings quality = SettingsOfQuality(settings.quality);
   const double rms = std::max(RmsRadius(first.positions), 1e-30);
-  const double displacement_step = settings.displacement_step.value_or(quality.displacement_step);
+  QualitySettings defaults = SettingsOfQuality(settings.quality);
+  if (settings.max_error) {
+    if (const double least = LeastMaxError(first.positions); *settings.max_error < least) {
+      std::ostringstream message;
+      message << "the largest error allowed, " << *settings.max_error
+              << ", is below the precision of the coordinates; the smallest possible is " << least;
+      return Status::InvalidArgument(message.str());
+    }
+    header.correction_step = static_cast<float>(CorrectionStep(*settings.max_error, first.positions));
+    const BoundedSettings bounded = SettingsOfMaxError(*settings.max_error, first.positions);
+    defaults = {settings.quality, bounded.motion_step, bounded.displacement_step / rms, bounded.detail_step / rms,
+                bounded.position_bits};
+  }
+  const double displacement_step = settings.displacement_step.value_or(defaults.displacement_step);
   header.reference_shape = static_cast<std::uint8_t>(settings.reference_shape);
   header.level_growth = static_cast<std::uint8_t>(std::lround(64 * settings.level_growth));
   header.vertices = static_cast<std::uint32_t>(first.positions.size());
   header.triangles = static_cast<std::uint32_t>(first.triangles.size());
   header.frame_rate_numerator = settings.frame_rate_numerator;
   header.frame_rate_denominator = settings.frame_rate_denominator;
-  header.motion_step = static_cast<float>(settings.motion_step.value_or(quality.motion_step));
+  header.motion_step = static_cast<float>(settings.motion_step.value_or(defaults.motion_step));
   header.displacement_step = static_cast<float>(displacement_step * rms);
-  const double detail_step = settings.detail_step.value_or(quality.detail_step);
-  header.detail_step = static_cast<float>(detail_step * rms);
+  header.detail_step = static_cast<float>(settings.detail_step.value_or(defaults.detail_step) * rms);
   header.patch_size = header.vertices <= kLargePatchVertices ? kLargePatch : kSmallPatch;
-  double bound = 0;
-  if (settings.max_error) {
-    bound = *settings.max_error - RoundingMargin(first.positions);
-    if (bound <= 0) return Status::InvalidArgument("the largest error allowed is below the coordinates' precision");
-    header.correction_step = static_cast<float>(0.999 * bound * 2 / std::sqrt(3.0));
-  }
   header.rotation_step = static_cast<float>(displacement_step);
   header.translation_step = header.displacement_step;
 
   PositionTargets targets;
   SAC_RETURN_IF_ERROR(
-      ChooseGrid(first, settings.position_bits.value_or(quality.position_bits), !settings.max_error, header, targets));
+      ChooseGrid(first, settings.position_bits.value_or(defaults.position_bits), !settings.max_error, header, targets));
   IFrameSyntax syntax;
   DecodedIFrame decoded;
   SAC_RETURN_IF_ERROR(EncodeIFrameMesh(first, targets, header, syntax, decoded, order));
@@ -251,7 +248,7 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   SAC_RETURN_IF_ERROR(
       BuildShape(header, std::move(decoded.mesh), counts, settings.samples_per_harmonic, Limits{}, shape_));
   syntax.fingerprint = shape_.basis.Fingerprint();
-  encoder_ = std::make_unique<GroupEncoder>(shape_, header, bound);
+  encoder_ = std::make_unique<GroupEncoder>(shape_, header, settings.max_error.value_or(0));
 
   bytes.assign(std::begin(kMagic), std::end(kMagic));
   stream_bytes.header += 4;
@@ -294,9 +291,12 @@ Status Encoder::Impl::FlushGroup() {
   RangeEncoder range;
   FrameCoder<RangeEncoder> coder(header, shape_.layouts);
   FrameBits bits;
-  bool good = encoder_->Encode(group_, structure, coded);
-  for (std::size_t i = 0; good && i < coded.size(); ++i) good = coder.Code(range, structure[i], coded[i], &bits);
-  if (!good) return Status::InvalidArgument("the motion is too far from the first frame for these steps");
+  SAC_RETURN_IF_ERROR(encoder_->Encode(group_, structure, coded));
+  for (std::size_t i = 0; i < coded.size(); ++i) {
+    if (!coder.Code(range, structure[i], coded[i], &bits)) {
+      return Status::InvalidArgument("the motion is too far from the first frame for these steps");
+    }
+  }
 
   ByteWriter payload;
   payload.Varint(frames);

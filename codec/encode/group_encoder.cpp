@@ -4,8 +4,11 @@
 #include <bit>
 #include <cmath>
 #include <cstdlib>
+#include <iomanip>
+#include <sstream>
 #include <utility>
 
+#include "codec/encode/error_bound.h"
 #include "codec/encode/quantizer.h"
 #include "codec/encode/rigid_fit.h"
 
@@ -31,28 +34,30 @@ Eigen::VectorXd ReferenceAreas(TriangleFields& fields, const PositionMatrix& pos
 }
 
 // Whether a residual is as large as the format allows: then it says less than it should.
-bool IsSaturated(const FramePlanes& planes) {
-  return std::any_of(planes.begin(), planes.end(), [](const PlaneValues& values) {
-    return std::any_of(values.begin(), values.end(), [](std::int32_t v) { return std::abs(v) >= kMaxResidual; });
-  });
+bool IsSaturated(const PlaneValues& values) {
+  return std::any_of(values.begin(), values.end(), [](std::int32_t v) { return std::abs(v) >= kMaxResidual; });
 }
+
+Status TooFar() { return Status::InvalidArgument("the motion is too far from the first frame for these steps"); }
 
 // The residual that makes `wanted` from zero at level 0, when there is one.
 bool ExactResidual(const PlaneValues& wanted, PlaneValues& residual) {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
     if (wanted[i] % kCoefficientsPerStep != 0) return false;
     residual[i] = wanted[i] / kCoefficientsPerStep;
+    if (std::abs(residual[i]) > kMaxResidual) return false;
   }
   return true;
 }
 
-// Corrects each vertex that is farther off than `max_error`, to within half a step along each axis.
-void CorrectOverBound(const PositionMatrix& left, double step, double max_error, PlaneValues& correction) {
+// Corrects each vertex of which the decoded float is farther off than `max_error`, to within half a step along each
+// axis. `left`: what the other planes leave, before the rigid motion; `error`: the same after it.
+void CorrectOverBound(const PositionMatrix& left, const PositionMatrix& exact, const PositionMatrix& error, double step,
+                      double max_error, PlaneValues& correction) {
   for (Eigen::Index v = 0; v < left.rows(); ++v) {
-    const bool good = left.row(v).norm() <= max_error;
+    if (DistanceAfterRounding(exact.row(v), error.row(v)) <= max_error) continue;
     for (Eigen::Index a = 0; a < 3; ++a) {
-      const double steps =
-          good ? 0 : std::clamp(std::round(left(v, a) / step), -1.0 * kMaxResidual, 1.0 * kMaxResidual);
+      const double steps = std::clamp(std::round(left(v, a) / step), -1.0 * kMaxResidual, 1.0 * kMaxResidual);
       correction[static_cast<std::size_t>(3 * v + a)] = static_cast<std::int32_t>(steps);
     }
   }
@@ -107,12 +112,12 @@ std::vector<GroupEncoder::Rigid> GroupEncoder::ChooseRigid(const std::vector<Pos
   return rigid;
 }
 
-bool GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
-                          std::vector<FrameSyntax>& coded) {
+Status GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
+                            std::vector<FrameSyntax>& coded) {
   // 1. By time, because rotations are unwrapped in time: rigid motions, then, against the one reference shape, fields.
   const std::vector<Rigid> rigid = ChooseRigid(frames, structure);
   std::vector<Eigen::MatrixXd> motion_targets(frames.size());
-  if (!reconstructor_.StartGroup()) return false;
+  if (!reconstructor_.StartGroup()) return TooFar();
   if (UsesKeyReference()) {
     for (std::size_t t = 0; t < frames.size(); ++t) {
       motion_targets[t] = MeasureMotion(reconstructor_.RemoveRigid(frames[t], rigid[t]));
@@ -126,16 +131,16 @@ bool GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::
     FrameSyntax& frame = coded.emplace_back();
     frame.slot = slot;
     frame.planes = EmptyPlanes(shape_.layouts);
-    if (!reconstructor_.StartFrame(slot.references.empty())) return false;
+    if (!reconstructor_.StartFrame(slot.references.empty())) return TooFar();
     const bool repeats = RepeatFrame(frames, structure, predictor, frame);
     if (!repeats) {
       const PositionMatrix aligned = reconstructor_.RemoveRigid(positions, rigid[slot.display]);
       if (!UsesKeyReference()) motion_targets[slot.display] = MeasureMotion(aligned);
-      ChoosePlanes(aligned, motion_targets[slot.display], predictor, frame);
+      SAC_RETURN_IF_ERROR(ChoosePlanes(positions, rigid[slot.display], motion_targets[slot.display], predictor, frame));
       const FrameCoefficients prediction = predictor.Predict(frame.slot);
       for (std::size_t i = 0; i < 6; ++i) frame.rigid[i] = rigid[slot.display][i] - prediction.rigid[i];
     }
-    if (IsSaturated(frame.planes) || !predictor.Add(frame)) return false;
+    if (!predictor.Add(frame)) return TooFar();
     // The next frame may be measured against this one.
     if (repeats && !UsesKeyReference()) reconstructor_.Reconstruct(predictor.frames().back());
   }
@@ -143,7 +148,7 @@ bool GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::
   for (std::size_t i = 0; i < structure.size(); ++i) {
     if (structure[i].display + 1 == frames.size()) last_ = predictor.frames()[i];
   }
-  return true;
+  return Status::Ok();
 }
 
 bool GroupEncoder::RepeatFrame(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
@@ -181,8 +186,10 @@ void GroupEncoder::Quantize(Plane plane, const Eigen::MatrixXd& target, FrameCoe
   }
 }
 
-void GroupEncoder::ChoosePlanes(const PositionMatrix& aligned, const Eigen::MatrixXd& motion_target,
-                                const Predictor& predictor, FrameSyntax& frame) {
+Status GroupEncoder::ChoosePlanes(const PositionMatrix& positions, const Rigid& rigid,
+                                  const Eigen::MatrixXd& motion_target, const Predictor& predictor,
+                                  FrameSyntax& frame) {
+  const PositionMatrix aligned = reconstructor_.RemoveRigid(positions, rigid);
   FrameCoefficients coefficients = predictor.Predict(frame.slot);
   Quantize(kMotion, motion_target, coefficients, frame);
   if (UsesKeyReference() && !frame.intra()) {  // a cut costs less from zero
@@ -202,13 +209,29 @@ void GroupEncoder::ChoosePlanes(const PositionMatrix& aligned, const Eigen::Matr
     Quantize(kDetail, projection_.ProjectPatches(left), coefficients, frame);
     left = aligned - reconstructor_.Add(kDetail, coefficients.planes[kDetail]);
   }
-  if (header_.correction_step > 0) {
-    CorrectOverBound(left, header_.correction_step, max_error_, frame.planes[kCorrection]);
-    for (std::size_t i = 0; i < frame.planes[kCorrection].size(); ++i) {
-      coefficients.planes[kCorrection][i] = frame.planes[kCorrection][i] * kCoefficientsPerStep;
-    }
-    reconstructor_.Add(kCorrection, coefficients.planes[kCorrection]);
+  if (header_.correction_step == 0) {
+    return std::any_of(frame.planes.begin(), frame.planes.end(), IsSaturated) ? TooFar() : Status::Ok();
   }
+  // Planes before it may be saturated: the correction alone has to hold the bound.
+  const auto error = [&]() -> PositionMatrix { return reconstructor_.ApplyRigid(aligned - left, rigid) - positions; };
+  CorrectOverBound(left, positions, error(), header_.correction_step, max_error_, frame.planes[kCorrection]);
+  for (std::size_t i = 0; i < frame.planes[kCorrection].size(); ++i) {
+    coefficients.planes[kCorrection][i] = frame.planes[kCorrection][i] * kCoefficientsPerStep;
+  }
+  left = aligned - reconstructor_.Add(kCorrection, coefficients.planes[kCorrection]);
+  return CheckBound(positions, error());
+}
+
+Status GroupEncoder::CheckBound(const PositionMatrix& exact, const PositionMatrix& error) const {
+  double most = 0;
+  for (Eigen::Index v = 0; v < exact.rows(); ++v) {
+    most = std::max(most, DistanceAfterRounding(exact.row(v), error.row(v)));
+  }
+  if (most <= max_error_) return Status::Ok();
+  std::ostringstream message;
+  message << "a vertex stays " << most << " from where it should be, more than the largest error allowed, "
+          << max_error_ << "; the smallest possible here is " << std::setprecision(3) << 1.05 * most;
+  return Status::InvalidArgument(message.str());
 }
 
 }  // namespace sac

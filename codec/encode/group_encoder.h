@@ -12,6 +12,7 @@
 #include "format/frame_syntax.h"
 #include "format/prediction.h"
 #include "format/sequence_header.h"
+#include "format/status.h"
 
 namespace sac {
 
@@ -19,14 +20,15 @@ namespace sac {
 class GroupEncoder {
  public:
   // `shape` must outlive it.
-  // `max_error`: what the correction plane leaves at most at any vertex, model units; of no meaning without that plane.
+  // `max_error`: how far any vertex may be from where it should be once positions are floats, model units; of no
+  // meaning without a correction plane.
   GroupEncoder(const Shape& shape, const SequenceHeader& header, double max_error);
 
   // `frames`: by time, in decoded vertex order, model units. `structure`: of the same number of frames. Appends the
-  // frames in coding order. False when a value leaves the range of the format or a reference shape cannot be
-  // factorized.
-  bool Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
-              std::vector<FrameSyntax>& coded);
+  // frames in coding order. kInvalidArgument when a value leaves the range of the format, a reference shape cannot be
+  // factorized or the bound cannot be held.
+  Status Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
+                std::vector<FrameSyntax>& coded);
 
  private:
   // A rigid motion before quantization: rotation vector and translation in the header's steps, and how far a choice may
@@ -47,8 +49,10 @@ class GroupEncoder {
   // Quantizes what `target` is beyond the prediction in `coefficients`, and adds it there.
   void Quantize(Plane plane, const Eigen::MatrixXd& target, FrameCoefficients& coefficients, FrameSyntax& frame) const;
   // Chooses the planes' residuals; drops the references where coding from zero is cheaper.
-  void ChoosePlanes(const PositionMatrix& aligned, const Eigen::MatrixXd& motion_target, const Predictor& predictor,
-                    FrameSyntax& frame);
+  Status ChoosePlanes(const PositionMatrix& positions, const Rigid& rigid, const Eigen::MatrixXd& motion_target,
+                      const Predictor& predictor, FrameSyntax& frame);
+  // Whether exact + error, rounded to floats, is within the bound.
+  Status CheckBound(const PositionMatrix& exact, const PositionMatrix& error) const;
   bool UsesKeyReference() const { return header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kKey); }
 
   const Shape& shape_;

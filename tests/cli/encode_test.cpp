@@ -100,6 +100,29 @@ TEST_F(EncodeTest, OptionsReachTheEncoder) {
   }
 }
 
+TEST_F(EncodeTest, HoldsABoundOnTheError) {
+  const nlohmann::json loose = EncodeJson("loose.sac", {"--max-error", "1e-2d", "--keep-order"});
+  const nlohmann::json report = EncodeJson("clip.sac", {"--max-error", "1e-3d", "--keep-order"});
+  const auto bound = report["settings"]["max_error"].get<double>();
+  EXPECT_NEAR(loose["settings"]["max_error"].get<double>(), 10 * bound, 1e-9);
+  EXPECT_GT(bound, 0.001);  // the flag is more than a metre wide
+  EXPECT_LT(bound, 0.003);
+  EXPECT_LE(report["max_error"].get<double>(), bound);
+  EXPECT_LT(Read("loose.sac").size(), Read("clip.sac").size());
+  Good({"decode", "clip.sac", "-o", "out.pc2"});
+  EXPECT_LE(GoodJson({"compare", "in.obj", "in.pc2", "--with", "out.obj", "out.pc2", "--json"})["max_error"], bound);
+  // The same in model units.
+  std::ostringstream units;
+  units.precision(17);
+  units << bound;
+  Encode("units.sac", {"--max-error", units.str(), "--keep-order"});
+  EXPECT_EQ(Read("units.sac"), Read("clip.sac"));
+  const Outcome refused = Sac({"encode", "in.obj", "in.pc2", "-o", "fine.sac", "--max-error", "1e-12d"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.err.find("in.obj: the largest error allowed, "), std::string::npos) << refused.err;
+  EXPECT_NE(refused.err.find("; the smallest possible is "), std::string::npos) << refused.err;
+}
+
 TEST_F(EncodeTest, WritesToStandardOutput) {
   Encode("clip.sac");
   const Outcome outcome = Sac({"encode", "in.obj", "in.pc2", "-o", "-", "--harmonics", "30", "--group", "5", "--json"});

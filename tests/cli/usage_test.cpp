@@ -45,6 +45,11 @@ TEST_F(UsageTest, ErrorsOfTheCommandLine) {
   ExpectFailure(encode({"--motion-step", "0"}), 2, "--motion-step: '0' is not a number from 1e-09 to 1e+09" + end);
   ExpectFailure(encode({"--displacement-step", "inf"}), 2,
                 "--displacement-step: 'inf' is not a number from 1e-09 to 1e+09" + end);
+  for (const char* word : {"0", "-1d", "1e-3dd", "d", "1e-3 d", "1D", "nan", ""}) {
+    ExpectFailure(encode({"--max-error", word}), 2,
+                  std::string("--max-error: '") + word +
+                      "' is not a number from 1e-30 to 1e+30, with or without the suffix d" + end);
+  }
   ExpectFailure(encode({"--fps", "24/0"}), 2, "--fps: '24/0' is no frame rate" + end);
   ExpectFailure(encode({"--reference", "next"}), 2, "--reference: next not in {key,previous}" + end);
   ExpectFailure(encode({"--keep-order", "--order-map", "map.txt"}), 2,

@@ -1,0 +1,84 @@
+#include "codec/encode/error_bound.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace sac {
+namespace {
+
+constexpr double kHalfUlp = 0x1p-24;  // of a float, relative
+
+double LargestCoordinate(const Positions& positions) {
+  double largest = 0;
+  for (const Vec3f& p : positions) {
+    for (const float x : p) largest = std::max(largest, std::abs(static_cast<double>(x)));
+  }
+  return largest;
+}
+
+// Half the distance from a float to the next one towards zero, which is never farther than the one away from it.
+double HalfSpacingBelow(double magnitude) {
+  const auto x = static_cast<float>(magnitude);
+  return (static_cast<double>(x) - static_cast<double>(std::nextafter(x, 0.0f))) / 2;
+}
+
+// How much rounding to a float changes a number of at most this magnitude.
+double LargestRounding(double magnitude) {
+  const auto x = static_cast<float>(magnitude);
+  return (static_cast<double>(std::nextafter(x, std::numeric_limits<float>::infinity())) - static_cast<double>(x)) / 2;
+}
+
+}  // namespace
+
+double BoxDiagonal(const Positions& positions) {
+  double squares = 0;
+  for (std::size_t a = 0; a < 3 && !positions.empty(); ++a) {
+    double low = static_cast<double>(positions[0][a]), high = low;
+    for (const Vec3f& p : positions) {
+      low = std::min(low, static_cast<double>(p[a]));
+      high = std::max(high, static_cast<double>(p[a]));
+    }
+    squares += (high - low) * (high - low);
+  }
+  return std::sqrt(squares);
+}
+
+double LeastMaxError(const Positions& first_frame) {
+  // 1e-30: a tenth of it is still an ordinary float.
+  return std::max(LargestCoordinate(first_frame) * kHalfUlp / 2, 1e-30);
+}
+
+double CorrectionStep(double max_error, const Positions& first_frame) {
+  const double rounding = std::sqrt(3.0) * LargestCoordinate(first_frame) * kHalfUlp;
+  const double left =
+      max_error < 64 * rounding ? 0.5 * max_error : std::min(max_error - 16 * rounding, 0.95 * max_error);
+  return 0.999 * left * 2 / std::sqrt(3.0);
+}
+
+double DistanceAfterRounding(const Eigen::RowVector3d& exact, const Eigen::RowVector3d& error) {
+  double squares = 0;
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    const double e = std::abs(error[a]);
+    if (e == 0 || e < 0.99 * HalfSpacingBelow(std::abs(exact[a]))) continue;
+    const double off = e + LargestRounding(std::abs(exact[a]) + e);
+    squares += off * off;
+  }
+  return std::sqrt(squares);
+}
+
+BoundedSettings SettingsOfMaxError(double max_error, const Positions& first_frame) {
+  const double diagonal = std::max(BoxDiagonal(first_frame), 1e-30);
+  const double bound = max_error / diagonal;
+  // Finer smooth planes pay as more detail rests on them, up to a point.
+  const double finer = std::clamp(std::pow(bound / 1e-3, 0.35), 0.1, 3.0);
+  // Nearly all vertices are to stay within the bound without a correction. Where detail is sparse, a coarser step does.
+  double detail = max_error * 0.85 * std::max(1.0, std::sqrt(bound / 3e-3));
+  // Below this, detail could not reach across the shape (a residual is 2^20 steps at most); the rest is for
+  // corrections.
+  if (bound < 1e-6) detail = std::max(detail, 2.7e-5 * diagonal);
+  return {0.02 * finer, 1.3e-4 * diagonal * finer, detail,
+          static_cast<int>(std::clamp(std::ceil(0.5 - std::log2(bound)), 7.0, 20.0))};
+}
+
+}  // namespace sac
