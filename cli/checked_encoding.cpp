@@ -32,7 +32,29 @@ Status CheckedEncoding::Open() {
   // The outputs before the harmonics, which take long.
   SAC_RETURN_IF_ERROR(stream_.Open(settings_.output));
   if (!settings_.order_map.empty()) SAC_RETURN_IF_ERROR(order_map_.Open(settings_.order_map));
+  if (settings_.targets.any()) SAC_RETURN_IF_ERROR(Search());
   return AtInput("", Encoder::Create(input_->mesh(), encoder, encoder_));
+}
+
+Status CheckedEncoding::Search() {
+  Progress progress(input_->frame_count());
+  Status input_status;  // names a file already
+  ClipSource clip;
+  clip.mesh = &input_->mesh();
+  clip.rewind = [this] { input_->Rewind(); };
+  clip.next = [&](Positions& frame, bool& end) { return input_status = input_->Next(frame, end); };
+  Trial best;
+  const auto run = [&](Trial& trial) {
+    progress.SetPass("trial " + std::to_string(++trials_) + ", ");
+    return RunTrial(
+        clip, [&progress](std::uint32_t count) { progress.FramesDone(count); }, trial);
+  };
+  const Status status = SearchTargets(settings_.targets, settings_.encoder, run, best);
+  SAC_RETURN_IF_ERROR(input_status);
+  SAC_RETURN_IF_ERROR(AtInput("", status));
+  settings_.encoder = best.settings;
+  input_->Rewind();
+  return Status::Ok();
 }
 
 Status CheckedEncoding::EncodeUntilBytes(std::span<const std::uint8_t>& chunk) {

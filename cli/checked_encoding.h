@@ -12,6 +12,7 @@
 #include "cli/error_option.h"
 #include "cli/output_file.h"
 #include "codec/encode/encoder.h"
+#include "codec/encode/search/target_search.h"
 #include "format/status.h"
 #include "metrics/error_meter.h"
 
@@ -28,6 +29,7 @@ class CheckedEncoding {
     // Without a frame rate that of the input is taken.
     EncoderSettings encoder;
     std::optional<ErrorLength> max_error;  // becomes the encoder's
+    RateTargets targets;                   // where there is one, the encoder's steps and bits are searched for it
   };
 
   explicit CheckedEncoding(const Settings& settings) : settings_(settings) {}
@@ -41,9 +43,12 @@ class CheckedEncoding {
   const StreamBytes& parts() const { return encoder_->stream_bytes(); }
   std::uint64_t bytes() const { return bytes_; }
   const DistortionMetrics& distortion() const { return distortion_; }
+  // That were made to find the settings.
+  std::uint32_t trials() const { return trials_; }
 
  private:
   Status Open();
+  Status Search();
   Status Check();
   Status EncodeUntilBytes(std::span<const std::uint8_t>& chunk);
   Status AtInput(const std::string& where, const Status& status) const;
@@ -54,6 +59,7 @@ class CheckedEncoding {
   OutputFile stream_, order_map_;
   std::vector<std::uint8_t> chunk_;
   std::uint64_t bytes_ = 0;
+  std::uint32_t trials_ = 0;
   bool finished_ = false;
   std::uint32_t sent_ = 0;
   std::deque<Positions> undecoded_;  // frames sent that have not come back yet

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -21,10 +22,12 @@
 namespace sac {
 namespace {
 
+constexpr double kLeastTarget = 1e-6, kLargestTarget = 1e6;
 constexpr double kLeastStep = 1e-9, kLargestStep = 1e9;
 
 struct EncodeOptions {
   CheckedEncoding::Settings settings;
+  std::optional<double> quality;
   std::string reference = "key";
   bool json = false;
 };
@@ -44,6 +47,17 @@ Status CheckOptions(EncodeOptions& options) {
   if (s.output == "-" && isatty(STDOUT_FILENO) == 1) {
     return Status::InvalidArgument("standard output is a terminal, which cannot show a stream");
   }
+  if (s.targets.any()) {
+    for (const auto& [name, given] : {std::pair{"--quality", options.quality.has_value()},
+                                      {"--motion-step", s.encoder.motion_step.has_value()},
+                                      {"--displacement-step", s.encoder.displacement_step.has_value()},
+                                      {"--detail-step", s.encoder.detail_step.has_value()},
+                                      {"--position-bits", s.encoder.position_bits.has_value()},
+                                      {"--max-error", s.max_error.has_value()}}) {
+      if (given) return Status::InvalidArgument(std::string(name) + " and a target exclude each other");
+    }
+  }
+  if (options.quality) s.encoder.quality = *options.quality;
   if (options.reference == "previous") s.encoder.reference_shape = ReferenceShape::kPrevious;
   std::vector<std::string> outputs{s.output};
   if (!s.order_map.empty()) outputs.push_back(s.order_map);
@@ -79,8 +93,12 @@ Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, doubl
   json["vertices"] = header.vertices;
   json["triangles"] = header.triangles;
   json["seconds"] = seconds;
+  if (options.settings.targets.any()) json["trials"] = encoding.trials();
   const EncoderSettings& encoder = encoding.encoder_settings();
   Json& settings = json["settings"];
+  settings["target_kg"] = or_null(options.settings.targets.kg);
+  settings["target_sted"] = or_null(options.settings.targets.sted);
+  settings["target_bpvf"] = or_null(options.settings.targets.bpvf);
   settings["quality"] = encoder.quality;
   settings["fps"] = header.frame_rate_numerator == 0 ? Json() : Json(RateText(header));
   settings["harmonics"] = encoder.harmonics;
@@ -108,6 +126,12 @@ void PrintText(const Json& json, const CheckedEncoding& encoding, std::FILE* fil
     std::fprintf(file, "  %-12s %10lld bytes %5.1f %%\n", part, size, 100 * static_cast<double>(size) / bytes);
   }
   PrintDistortion(encoding.distortion(), file);
+  if (encoding.trials() > 0) {
+    const EncoderSettings& s = encoding.encoder_settings();
+    std::fprintf(
+        file, "found in %u trials: --motion-step %.4g --displacement-step %.4g --detail-step %.4g --position-bits %d\n",
+        encoding.trials(), *s.motion_step, *s.displacement_step, *s.detail_step, *s.position_bits);
+  }
   std::fprintf(file, "%.2f seconds\n", json["seconds"].get<double>());
 }
 
@@ -151,7 +175,14 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
   app.add_option("-o,--output", o.settings.output, "the stream to write; - is standard output")
       ->required()
       ->option_text("FILE");
-  AddNumber(app, "--quality", encoder.quality, 0.0, 100.0, "0 (smallest) to 100 (nearest to the input) [50]");
+  AddNumber(app, "--quality", o.quality, 0.0, 100.0, "0 (smallest) to 100 (nearest to the input) [50]");
+  RateTargets& targets = o.settings.targets;
+  AddNumber(app, "--target-kg", targets.kg, kLeastTarget, kLargestTarget,
+            "search for the smallest stream of at most this KG, percent; the clip is encoded several times");
+  AddNumber(app, "--target-sted", targets.sted, kLeastTarget, kLargestTarget, "likewise of at most this STED");
+  AddNumber(app, "--target-bpvf", targets.bpvf, kLeastTarget, kLargestTarget,
+            "search for the best quality in at most so many bits a vertex and frame; with another target, fail where "
+            "that takes more");
   AddFrameRate(app, encoder);
   AddNumber(app, "--harmonics", encoder.harmonics, 1u, Limits{}.harmonics,
             "manifold harmonics over all components; time and memory grow with them [200]");
@@ -193,6 +224,7 @@ Command AddEncodeCommand(CLI::App& app) {
       "Examples:\n"
       "  sac encode body.obj walk.pc2 -o walk.sac\n"
       "  sac encode frame_%04d.ply -o clip.sac --fps 29.97 --quality 70 --keep-order\n"
+      "  sac encode body.obj walk.pc2 -o walk.sac --target-kg 1.2 --target-sted 0.05\n"
       "  sac encode body.obj walk.mdd -o - --json | ssh host 'cat > walk.sac'\n");
   return {command, [options] { return CheckOptions(*options); }, [options] { return Encode(*options); }};
 }

@@ -17,7 +17,7 @@ void Progress::FramesDone(std::uint32_t count) {
   const auto now = std::chrono::steady_clock::now();
   if (now - last_ < std::chrono::milliseconds(100)) return;
   last_ = now;
-  Show("frame " + std::to_string(count) + (total_ ? " / " + std::to_string(*total_) : std::string()));
+  Show(pass_ + "frame " + std::to_string(count) + (total_ ? " / " + std::to_string(*total_) : std::string()));
 }
 
 void Progress::Show(const std::string& text) {

@@ -19,6 +19,8 @@ class Progress {
 
   // `text` until the first frame is done.
   void Begin(const std::string& text);
+  // What is said before the frames from now on: which pass over the clip this is.
+  void SetPass(const std::string& pass) { pass_ = pass; }
   void FramesDone(std::uint32_t count);
 
  private:
@@ -26,6 +28,7 @@ class Progress {
 
   bool terminal_;
   std::optional<std::uint32_t> total_;
+  std::string pass_;
   std::size_t shown_ = 0;  // columns in use
   std::chrono::steady_clock::time_point last_;
 };

@@ -19,6 +19,9 @@ constexpr std::array<QualitySettings, 9> kTable = {{
     {100, 0.015, 0.0004, 0.0004, 15},
 }};
 
+// Before this part of the way from none to some, detail steps are so coarse that nothing would be coded.
+constexpr double kLeastDetail = 0.02;
+
 }  // namespace
 
 QualitySettings SettingsOfQuality(double quality) {
@@ -28,7 +31,7 @@ QualitySettings SettingsOfQuality(double quality) {
   const double t = (quality - low.quality) / (high.quality - low.quality);
   // Steps matter by their ratio.
   const auto between = [t](double a, double b) {
-    if (a == 0) return t < 1 ? 0.0 : b;
+    if (a == 0) return t < kLeastDetail ? 0.0 : b / t;  // detail fades in from an infinite step
     return a * std::pow(b / a, t);
   };
   return {quality, between(low.motion_step, high.motion_step), between(low.displacement_step, high.displacement_step),

@@ -123,6 +123,36 @@ TEST_F(EncodeTest, HoldsABoundOnTheError) {
   EXPECT_NE(refused.err.find("; the smallest possible is "), std::string::npos) << refused.err;
 }
 
+TEST_F(EncodeTest, SearchesForTargets) {
+  const nlohmann::json kg = EncodeJson("kg.sac", {"--target-kg", "1"});
+  EXPECT_LE(kg["kg"], 1);
+  EXPECT_GE(kg["kg"], 0.97);
+  EXPECT_GT(kg["trials"], 1);
+  EXPECT_EQ(kg["settings"]["target_kg"], 1);
+  EXPECT_TRUE(kg["settings"]["target_sted"].is_null());
+  EXPECT_EQ(kg["bytes"], Read("kg.sac").size());
+  const std::string report = Encode("size.sac", {"--target-bpvf", "8"});
+  EXPECT_NE(report.find("\nfound in "), std::string::npos) << report;
+  EXPECT_NE(report.find(" trials: --motion-step "), std::string::npos) << report;
+  const nlohmann::json size = EncodeJson("size.sac", {"--target-bpvf", "8"});
+  EXPECT_LE(size["bpvf"], 8);
+  EXPECT_GE(size["bpvf"], 0.97 * 8);
+  // The report's settings give the same stream.
+  const nlohmann::json& s = size["settings"];
+  Encode("again.sac", {"--motion-step", s["motion_step"].dump(), "--displacement-step", s["displacement_step"].dump(),
+                       "--detail-step", s["detail_step"].dump(), "--position-bits", s["position_bits"].dump()});
+  EXPECT_EQ(Read("again.sac"), Read("size.sac"));
+  for (const std::vector<std::string>& targets : std::vector<std::vector<std::string>>{
+           {"--target-kg", "1", "--target-bpvf", "0.1"}, {"--target-bpvf", "0.01"}, {"--target-sted", "1e-6"}}) {
+    std::vector<std::string> arguments{"encode", "in.obj", "in.pc2", "-o", "none.sac", "--harmonics", "5"};
+    arguments.insert(arguments.end(), targets.begin(), targets.end());
+    const Outcome outcome = Sac(arguments);
+    EXPECT_EQ(outcome.code, 1);
+    EXPECT_EQ(outcome.err.rfind("sac: in.obj: the target", 0), 0u) << outcome.err;
+    EXPECT_FALSE(std::filesystem::exists(Path("none.sac")));
+  }
+}
+
 TEST_F(EncodeTest, WritesToStandardOutput) {
   Encode("clip.sac");
   const Outcome outcome = Sac({"encode", "in.obj", "in.pc2", "-o", "-", "--harmonics", "30", "--group", "5", "--json"});

@@ -1,0 +1,195 @@
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "codec/encode/quality.h"
+#include "codec/encode/search/band.h"
+#include "codec/encode/search/target_search.h"
+#include "synth/synth.h"
+
+namespace sac {
+namespace {
+
+// A synthetic clip that can be read again.
+class SynthSource {
+ public:
+  SynthSource(SynthKind kind, std::uint32_t vertices, std::uint32_t frames) {
+    EXPECT_TRUE(SynthClip::Create({kind, vertices, frames, 1}, clip_).ok());
+    source_.mesh = &clip_.mesh();
+    source_.rewind = [this] { next_ = 0; };
+    source_.next = [this](Positions& frame, bool& end) {
+      end = next_ == clip_.frames();
+      if (!end) frame = clip_.Frame(next_++);
+      return Status::Ok();
+    };
+  }
+
+  Status Search(const RateTargets& targets, Trial& best) {
+    EncoderSettings base;
+    base.harmonics = 40;
+    base.group = 20;
+    trials = 0;
+    const auto run = [this](Trial& trial) {
+      ++trials;
+      return RunTrial(
+          source_, [](std::uint32_t) {}, trial);
+    };
+    return SearchTargets(targets, base, run, best);
+  }
+  Trial Run(const EncoderSettings& settings) {
+    Trial trial;
+    trial.settings = settings;
+    const Status status = RunTrial(
+        source_, [](std::uint32_t) {}, trial);
+    EXPECT_TRUE(status.ok()) << status.message();
+    return trial;
+  }
+
+  int trials = 0;
+
+ private:
+  SynthClip clip_;
+  ClipSource source_;
+  std::uint32_t next_ = 0;
+};
+
+void ExpectReached(double figure, double target) {
+  EXPECT_LE(figure, target);
+  EXPECT_GE(figure, 0.97 * target);
+}
+
+struct Case {
+  SynthKind kind;
+  std::uint32_t vertices;
+  std::array<double, 2> kg, sted, bpvf;
+};
+const std::array<Case, 2> kCases = {{{SynthKind::kFlag, 400, {2.5, 0.3}, {0.03, 0.015}, {3, 6}},
+                                     {SynthKind::kWalker, 2000, {2, 0.3}, {0.1, 0.03}, {0.5, 2}}}};
+
+TEST(RateSearch, ReachesEachTargetAlone) {
+  for (const Case& c : kCases) {
+    SynthSource clip(c.kind, c.vertices, 12);
+    for (std::size_t i = 0; i < 2; ++i) {
+      SCOPED_TRACE(testing::Message() << static_cast<int>(c.kind) << " " << i);
+      Trial best;
+      Status status = clip.Search({c.kg[i], {}, {}}, best);
+      ASSERT_TRUE(status.ok()) << status.message();
+      ExpectReached(best.kg, c.kg[i]);
+      EXPECT_LE(clip.trials, 25);
+      status = clip.Search({{}, c.sted[i], {}}, best);
+      ASSERT_TRUE(status.ok()) << status.message();
+      ExpectReached(best.sted, c.sted[i]);
+      EXPECT_LE(clip.trials, 25);
+      status = clip.Search({{}, {}, c.bpvf[i]}, best);
+      ASSERT_TRUE(status.ok()) << status.message();
+      ExpectReached(best.bpvf, c.bpvf[i]);
+      EXPECT_LE(clip.trials, 25);
+    }
+  }
+}
+
+TEST(RateSearch, ReachesKgAndStedTogether) {
+  for (const Case& c : kCases) {
+    SynthSource clip(c.kind, c.vertices, 12);
+    SCOPED_TRACE(static_cast<int>(c.kind));
+    Trial kg_alone, best;
+    ASSERT_TRUE(clip.Search({c.kg[0], {}, {}}, kg_alone).ok());
+    for (const double factor : {0.7, 1.0, 1.2}) {
+      const double sted = factor * kg_alone.sted;
+      const Status status = clip.Search({c.kg[0], sted, {}}, best);
+      ASSERT_TRUE(status.ok()) << status.message();
+      EXPECT_LE(best.kg, c.kg[0]);
+      EXPECT_LE(best.sted, sted);
+      EXPECT_TRUE(best.kg >= 0.97 * c.kg[0] || best.sted >= 0.97 * sted) << best.kg << " " << best.sted;
+      EXPECT_LE(clip.trials, 40);
+    }
+  }
+}
+
+TEST(RateSearch, WhatWasMeasuredIsWhatTheSettingsGive) {
+  SynthSource clip(SynthKind::kFlag, 300, 12);
+  Trial best;
+  ASSERT_TRUE(clip.Search({2.0, {}, {}}, best).ok());
+  const Trial again = clip.Run(best.settings);
+  EXPECT_EQ(again.bytes, best.bytes);
+  EXPECT_EQ(again.kg, best.kg);
+  EXPECT_EQ(again.sted, best.sted);
+}
+
+TEST(RateSearch, ASizeWithADistortionIsMetOrRefused) {
+  SynthSource clip(SynthKind::kFlag, 300, 12);
+  Trial best;
+  ASSERT_TRUE(clip.Search({2.0, {}, {}}, best).ok());
+  const double bpvf = best.bpvf;
+  Trial roomy;
+  ASSERT_TRUE(clip.Search({2.0, {}, 1.5 * bpvf}, roomy).ok());
+  EXPECT_EQ(roomy.bytes, best.bytes);  // the smaller stream
+  const Status tight = clip.Search({2.0, {}, 0.7 * bpvf}, best);
+  EXPECT_EQ(tight.code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(tight.message().rfind("the targets exclude each other: KG ", 0), 0u) << tight.message();
+}
+
+TEST(RateSearch, SaysWhatCannotBeReached) {
+  SynthSource clip(SynthKind::kFlag, 300, 4);
+  Trial best;
+  for (const RateTargets& targets : {RateTargets{1e-6, {}, {}}, {{}, 1e-6, {}}, {{}, {}, 0.01}}) {
+    const Status status = clip.Search(targets, best);
+    EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+    EXPECT_EQ(status.message().rfind("the target cannot be reached; nearest came KG ", 0), 0u) << status.message();
+  }
+  EXPECT_EQ(clip.Search({}, best).code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(clip.Search({-1.0, {}, {}}, best).code(), StatusCode::kInvalidArgument);
+}
+
+// Whatever is tried in between, all of the range gives less error for more bytes.
+TEST(RateSearch, QualityIsMonotone) {
+  SynthSource clip(SynthKind::kWalker, 2000, 12);
+  Trial last;
+  for (int quality = 0; quality <= 100; quality += 10) {
+    EncoderSettings settings;
+    settings.quality = quality;
+    const Trial trial = clip.Run(settings);
+    if (quality > 0) {
+      EXPECT_GT(trial.bytes, last.bytes) << quality;
+      EXPECT_LT(trial.kg, last.kg) << quality;
+    }
+    last = trial;
+  }
+}
+
+TEST(RateSearch, StepsOfQualitiesNeverGrow) {
+  QualitySettings last = SettingsOfQuality(0);
+  for (double quality = 0.5; quality <= 100; quality += 0.5) {
+    const QualitySettings s = SettingsOfQuality(quality);
+    EXPECT_LE(s.motion_step, last.motion_step) << quality;
+    EXPECT_LE(s.displacement_step, last.displacement_step) << quality;
+    EXPECT_GE(s.position_bits, last.position_bits) << quality;
+    if (last.detail_step > 0) {
+      EXPECT_LE(s.detail_step, last.detail_step) << quality;
+    }
+    last = s;
+  }
+}
+
+TEST(Band, IsFoundOnCurvesOfAllKinds) {
+  const auto solve = [](const std::function<double(double)>& curve, double slope) {
+    double x = 3;
+    int evaluations = 0;
+    const auto evaluate = [&](double at, double& y) {
+      ++evaluations;
+      y = curve(at);
+      return Status::Ok();
+    };
+    EXPECT_TRUE(FindInBand({evaluate, slope, -100, 100, 14}, x).ok());
+    EXPECT_TRUE(InBand(curve(x))) << x;
+    EXPECT_LE(evaluations, 14);
+  };
+  solve([](double x) { return -0.03 * x; }, -0.03);
+  solve([](double x) { return -0.3 * (x + 50); }, -0.03);
+  solve([](double x) { return 0.01 * (x - 60); }, 0.03);
+  solve([](double x) { return std::exp(-x / 10) - 0.5; }, -0.03);
+  solve([](double x) { return x < 20 ? 1 - x / 100 : 0.2 - (x - 20) / 10; }, -0.03);  // a jump on the way
+}
+
+}  // namespace
+}  // namespace sac
