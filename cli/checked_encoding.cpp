@@ -27,7 +27,11 @@ Status CheckedEncoding::Open() {
   }
   if (settings_.max_error) {
     encoder.max_error = settings_.max_error->value;
-    if (settings_.max_error->in_diagonals) *encoder.max_error *= BoxDiagonal(input_->mesh().positions);
+    const double diagonal = BoxDiagonal(input_->mesh().positions);
+    if (settings_.max_error->in_diagonals && diagonal == 0) {
+      return AtInput("", Status::InvalidArgument("its first frame is a single point: --max-error needs model units"));
+    }
+    if (settings_.max_error->in_diagonals) *encoder.max_error *= diagonal;
   }
   // The outputs before the harmonics, which take long.
   SAC_RETURN_IF_ERROR(stream_.Open(settings_.output));

@@ -163,6 +163,30 @@ TEST(Encoder, TakesShapesWithoutExtent) {
   }
 }
 
+// What comes out of a point is as near as what comes out of anything.
+TEST(Encoder, TakesFirstFramesThatAreAPoint) {
+  for (const Vec3f& point : {Vec3f{0, 0, 0}, Vec3f{5, 6, 7}, Vec3f{-1e-3f, 0, 0}}) {
+    for (const bool bounded : {false, true}) {
+      Clip clip = BendingClip(8);
+      const double scale = point[0] == 5 ? 1 : point[0] == 0 ? 1 : 1e-3;
+      for (Positions& frame : clip.frames) {
+        frame = Moved(frame, scale * Eigen::Matrix3d::Identity(), {point[0], point[1], point[2]});
+      }
+      clip.frames[0].assign(clip.frames[0].size(), point);
+      clip.mesh.positions = clip.frames[0];
+      EncoderSettings settings;
+      if (bounded) settings.max_error = 1e-3 * scale;
+      const Encoded encoded = Encode(clip, settings);
+      const Decoded decoded = Decode(encoded.bytes);
+      ASSERT_EQ(decoded.frames.size(), 8u) << decoded.status.message();
+      for (std::size_t t = 0; t < 8; ++t) {
+        const double error = MaxDistance(clip.frames[t], decoded.frames[t].positions, encoded.order);
+        EXPECT_LE(error, bounded ? *settings.max_error : 2 * scale) << t;
+      }
+    }
+  }
+}
+
 TEST(Encoder, HeaderSaysWhatWasAskedFor) {
   EncoderSettings settings;
   settings.frame_rate_numerator = 30000;

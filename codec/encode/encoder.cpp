@@ -149,9 +149,10 @@ double RmsRadius(const Positions& positions) {
       squares += d * d;
     }
   }
-  if (squares > 0) return std::sqrt(squares / n);
-  // A point has no size: any that is not tiny beside its coordinates will do.
-  return std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]) / n;
+  // A single point has no size of its own; how far it is from the origin tells most about how far it may go.
+  const double radius = std::sqrt(squares / n), largest = LargestCoordinate(positions);
+  if (radius > 1e-7 * largest) return radius;
+  return largest > 0 ? largest : 1;
 }
 
 // Harmonics for each component in proportion to its area, which by Weyl's law is an equal bound on eigenvalues; one at
@@ -202,7 +203,7 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   SAC_RETURN_IF_ERROR(CheckMesh(first));
   SAC_RETURN_IF_ERROR(CheckFinite(first.positions));
   settings_ = settings;
-  const double rms = std::max(RmsRadius(first.positions), 1e-30);
+  const double rms = RmsRadius(first.positions);
   QualitySettings defaults = SettingsOfQuality(settings.quality);
   if (settings.max_error) {
     if (const double least = LeastMaxError(first.positions); *settings.max_error < least) {

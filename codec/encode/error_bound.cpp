@@ -9,14 +9,6 @@ namespace {
 
 constexpr double kHalfUlp = 0x1p-24;  // of a float, relative
 
-double LargestCoordinate(const Positions& positions) {
-  double largest = 0;
-  for (const Vec3f& p : positions) {
-    for (const float x : p) largest = std::max(largest, std::abs(static_cast<double>(x)));
-  }
-  return largest;
-}
-
 // Half the distance from a float to the next one towards zero, which is never farther than the one away from it.
 double HalfSpacingBelow(double magnitude) {
   const auto x = static_cast<float>(magnitude);
@@ -30,6 +22,14 @@ double LargestRounding(double magnitude) {
 }
 
 }  // namespace
+
+double LargestCoordinate(const Positions& positions) {
+  double largest = 0;
+  for (const Vec3f& p : positions) {
+    for (const float x : p) largest = std::max(largest, std::abs(static_cast<double>(x)));
+  }
+  return largest;
+}
 
 double BoxDiagonal(const Positions& positions) {
   double squares = 0;
@@ -68,7 +68,8 @@ double DistanceAfterRounding(const Eigen::RowVector3d& exact, const Eigen::RowVe
 }
 
 BoundedSettings SettingsOfMaxError(double max_error, const Positions& first_frame) {
-  const double diagonal = std::max(BoxDiagonal(first_frame), 1e-30);
+  double diagonal = BoxDiagonal(first_frame);
+  if (diagonal == 0) diagonal = std::max(LargestCoordinate(first_frame), max_error);  // a single point
   const double bound = max_error / diagonal;
   // Finer smooth planes pay as more detail rests on them, up to a point.
   const double finer = std::clamp(std::pow(bound / 1e-3, 0.35), 0.1, 3.0);

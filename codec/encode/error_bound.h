@@ -7,6 +7,9 @@
 
 namespace sac {
 
+// The largest magnitude of a coordinate.
+double LargestCoordinate(const Positions& positions);
+
 // The diagonal of the bounding box, model units.
 double BoxDiagonal(const Positions& positions);
 
