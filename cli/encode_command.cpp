@@ -102,8 +102,10 @@ Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, doubl
   settings["quality"] = encoder.quality;
   settings["fps"] = header.frame_rate_numerator == 0 ? Json() : Json(RateText(header));
   settings["harmonics"] = encoder.harmonics;
+  settings["samples_per_harmonic"] = encoder.samples_per_harmonic;
   settings["group"] = encoder.group;
-  settings["pyramid"] = encoder.pyramid;
+  settings["pyramid"] = encoder.low_delay ? 1 : encoder.pyramid;
+  settings["low_delay"] = encoder.low_delay;
   settings["reference"] = options.reference;
   settings["motion_step"] = or_null(encoder.motion_step);  // null: from the quality
   settings["displacement_step"] = or_null(encoder.displacement_step);
@@ -186,10 +188,15 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
   AddFrameRate(app, encoder);
   AddNumber(app, "--harmonics", encoder.harmonics, 1u, Limits{}.harmonics,
             "manifold harmonics over all components; time and memory grow with them [200]");
+  AddNumber(
+      app, "--samples-per-harmonic", encoder.samples_per_harmonic, 0u, 64u,
+      "radial functions a harmonic that the basis is computed from; 0 for exact harmonics, which start slowly [2]");
   AddNumber(app, "--group", encoder.group, 1u, Limits{}.frames_per_group,
             "frames between points of random access [128]");
-  AddNumber(app, "--pyramid", encoder.pyramid, 1u, Limits{}.frames_per_group,
-            "frames of a hierarchy of B-frames; 1 for P-frames only [16]");
+  CLI::Option* pyramid = AddNumber(app, "--pyramid", encoder.pyramid, 1u, Limits{}.frames_per_group,
+                                   "frames of a hierarchy of B-frames; 1 for P-frames only [16]");
+  app.add_flag("--low-delay", encoder.low_delay, "P-frames only, each written as soon as it is read: for live streams")
+      ->excludes(pyramid);
   app.add_option("--reference", o.reference,
                  "what motion is measured against: key, the first frame, or previous, the frame before [key]")
       ->check(CLI::IsMember(std::vector<std::string>{"key", "previous"}))
@@ -225,7 +232,7 @@ Command AddEncodeCommand(CLI::App& app) {
       "  sac encode body.obj walk.pc2 -o walk.sac\n"
       "  sac encode frame_%04d.ply -o clip.sac --fps 29.97 --quality 70 --keep-order\n"
       "  sac encode body.obj walk.pc2 -o walk.sac --target-kg 1.2 --target-sted 0.05\n"
-      "  sac encode body.obj walk.mdd -o - --json | ssh host 'cat > walk.sac'\n");
+      "  sac encode body.obj walk.mdd -o - --low-delay | ssh host 'cat > walk.sac'\n");
   return {command, [options] { return CheckOptions(*options); }, [options] { return Encode(*options); }};
 }
 

@@ -69,7 +69,9 @@ void PrintText(const std::string& name, const StreamSummary& summary) {
   if (const auto seconds = Duration(summary)) std::printf("%-24s %.6g seconds\n", "duration", *seconds);
   for (const PacketSummary& packet : summary.packets) {
     std::printf("packet %-8s %10llu bytes", NameOf(packet.type), static_cast<unsigned long long>(packet.bytes));
-    if (packet.type == PacketType::kGroup) std::printf(" %6u frames", packet.frames);
+    if (packet.type == PacketType::kGroup) {
+      std::printf(" %6u frames%s", packet.frames, packet.low_delay ? ", low delay" : "");
+    }
     std::printf("\n");
   }
 }
@@ -103,7 +105,9 @@ Json ToJson(const StreamSummary& summary, const Status& status) {
     Json& entry = json["packets"].emplace_back();
     entry["type"] = NameOf(packet.type);
     entry["bytes"] = packet.bytes;
-    if (packet.type == PacketType::kGroup) entry["frames"] = packet.frames;
+    if (packet.type != PacketType::kGroup) continue;
+    entry["frames"] = packet.frames;
+    entry["low_delay"] = packet.low_delay;
   }
   return json;
 }

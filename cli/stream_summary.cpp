@@ -36,6 +36,10 @@ Status Take(const Packet& packet, PacketSummary& line, StreamSummary& summary) {
       return TakeIFrame(packet.payload, summary);
     case PacketType::kGroup:
       if (!summary.i_frame) return Status::Corrupt("a group before the I-frame");
+      if (packet.payload.size() == 1 && packet.payload[0] == kOpenGroup) {
+        line.low_delay = true;
+        return Status::Ok();
+      }
       line.frames = reader.Varint();
       if (!reader.ok() || line.frames == 0) return Status::Corrupt("group: malformed number of frames");
       summary.frames += line.frames;
@@ -47,6 +51,12 @@ Status Take(const Packet& packet, PacketSummary& line, StreamSummary& summary) {
         return Status::Corrupt("end: " + std::to_string(frames) + " frames declared, " +
                                std::to_string(summary.frames) + " found");
       }
+      return Status::Ok();
+    case PacketType::kFrame:
+      line.frames = 1;
+      ++summary.frames;
+      return Status::Ok();
+    case PacketType::kGroupEnd:
       return Status::Ok();
   }
   return Status::Corrupt("unknown packet");
@@ -70,10 +80,15 @@ Status Summarize(StreamInput& input, StreamSummary& summary) {
     PacketSummary line{packet->type, reader.position() - begin};
     begin = reader.position();
     if (const Status s = Take(*packet, line, summary); !s.ok()) return at(s);
-    summary.packets.push_back(line);
+    if (packet->type != PacketType::kFrame && packet->type != PacketType::kGroupEnd) {
+      summary.packets.push_back(line);
+      continue;
+    }
+    summary.packets.back().bytes += line.bytes;  // of the open group
+    summary.packets.back().frames += line.frames;
   }
   if (summary.ended) return Status::Ok();
-  return at(Status::Corrupt("the stream is truncated after frame " + std::to_string(summary.frames)));
+  return at(Truncated(summary.bytes, summary.frames));
 }
 
 const char* NameOf(PacketType type) {
@@ -83,6 +98,8 @@ const char* NameOf(PacketType type) {
     case PacketType::kIFrame:
       return "i_frame";
     case PacketType::kGroup:
+    case PacketType::kFrame:
+    case PacketType::kGroupEnd:
       return "group";
     case PacketType::kEnd:
       return "end";

@@ -16,6 +16,7 @@ struct PacketSummary {
   PacketType type;
   std::uint64_t bytes;       // with framing
   std::uint32_t frames = 0;  // of a group
+  bool low_delay = false;    // a group whose frames are sent one by one
 };
 
 struct IFrameSummary {

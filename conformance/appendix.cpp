@@ -87,6 +87,9 @@ class Listing {
       case PacketType::kEnd:
         element(number("frames", reader.Varint()));
         break;
+      case PacketType::kFrame:
+      case PacketType::kGroupEnd:
+        break;
     }
   }
 

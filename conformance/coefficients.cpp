@@ -55,6 +55,15 @@ Status ReadGroup(std::span<const std::uint8_t> payload, const SequenceHeader& he
   return Status::Ok();
 }
 
+Status ReadFrame(std::span<const std::uint8_t> payload, FrameCoder<RangeDecoder>& coder, const TakeFrame& take) {
+  RangeDecoder range(payload);
+  FrameSyntax frame;
+  const FrameSlot slot = ChainSlot(static_cast<std::uint32_t>(coder.predictor().frames().size()));
+  if (!coder.Code(range, slot, frame)) return Status::Corrupt("malformed frame");
+  take(frame.slot, coder.predictor().frames().back());
+  return Status::Ok();
+}
+
 }  // namespace
 
 std::uint32_t CoefficientsCrc32(const FrameCoefficients& coefficients, std::uint32_t crc) {
@@ -74,13 +83,20 @@ Status ReadCoefficients(std::span<const std::uint8_t> stream, const TakeFrame& t
   PacketReader packets(limits);
   SequenceHeader header;
   PlaneLayouts layouts;
+  std::optional<FrameCoder<RangeDecoder>> open;
   while (!stream.empty()) {
     std::optional<Packet> packet;
     SAC_RETURN_IF_ERROR(packets.Read(stream, packet));
     if (!packet) break;
     if (packet->type == PacketType::kHeader) SAC_RETURN_IF_ERROR(ParseSequenceHeader(packet->payload, limits, header));
     if (packet->type == PacketType::kIFrame) SAC_RETURN_IF_ERROR(ParseLayouts(packet->payload, header, layouts));
-    if (packet->type == PacketType::kGroup) SAC_RETURN_IF_ERROR(ReadGroup(packet->payload, header, layouts, take));
+    if (packet->type == PacketType::kFrame) SAC_RETURN_IF_ERROR(ReadFrame(packet->payload, *open, take));
+    if (packet->type != PacketType::kGroup) continue;
+    if (packet->payload.size() == 1 && packet->payload[0] == kOpenGroup) {
+      open.emplace(header, layouts);
+    } else {
+      SAC_RETURN_IF_ERROR(ReadGroup(packet->payload, header, layouts, take));
+    }
   }
   return packets.AtBoundary() ? Status::Ok() : Status::Corrupt("truncated");
 }

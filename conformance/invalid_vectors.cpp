@@ -181,6 +181,47 @@ void AddPackets(Collection& c) {
   c.ChangePackets("R56", "short", [](Packets& p) { p[2].second.resize(4); });
 }
 
+void AddRecords(Collection& c) {
+  // The small stream's second half: an open group of two frames. `change` is given its records after the packet.
+  const auto records = [&](const char* rule, const char* name, const std::function<void(Bytes&)>& change,
+                           const char* status = "corrupt") {
+    StreamParts parts = SmallStream();
+    const auto fill = [](std::uint32_t i, FrameSyntax& frame) { frame.planes[kMotion][0] = 1 + static_cast<int>(i); };
+    Bytes group = CodeOpenGroup(parts, 2, fill);
+    Bytes after(group.begin() + 6, group.end());
+    group.resize(6);
+    change(after);
+    group.insert(group.end(), after.begin(), after.end());
+    parts.open_groups = {group};
+    parts.frames += 2;
+    c.Add(rule, name, parts.Join(), status);
+  };
+  records("R5", "open_group", [](Bytes& b) { b.resize(3); });
+  records("R64", "long", [](Bytes& b) { b = {0xff, 0xff, 0xff, 0xff, 0xff}; });
+  records("R64", "superfluous_zero", [](Bytes& b) { b = {0x80, 0x00}; });
+  records("R65", "frame", [](Bytes& b) { b[1] ^= 4; });
+  records("R65", "check", [](Bytes& b) { b[b[0]] ^= 0x80; });
+  records("R65", "end", [](Bytes& b) { b.back() ^= 1; });
+  records(
+      "R3", "frame",
+      [](Bytes& b) {
+        ByteWriter huge;
+        huge.Varint((1u << 28) + 2);
+        b = huge.bytes();
+      },
+      "limit");
+  // Frames whose checks are right.
+  const auto frame = [&](const char* rule, const char* name, const Bytes& code) {
+    StreamParts parts = SmallStream();
+    RecordWriter writer;
+    Bytes& group = parts.open_groups.emplace_back(writer.Open());
+    for (const Bytes& part : {writer.Frame(code), writer.End()}) group.insert(group.end(), part.begin(), part.end());
+    parts.frames += 1;
+    c.Add(rule, name, parts.Join());
+  };
+  frame("R56", "record_long", {0, 0, 0, 0, 0, 0, 0, 0, 1});
+}
+
 void AddHeader(Collection& c) {
   const auto header = [&](const char* rule, const char* name, const std::function<void(SequenceHeader&)>& change,
                           const char* status = "corrupt") {
@@ -389,6 +430,7 @@ void AddGroups(Collection& c) {
 std::vector<InvalidVector> InvalidVectors() {
   Collection c;
   AddPackets(c);
+  AddRecords(c);
   AddHeader(c);
   AddSideInformation(c);
   AddDraco(c);

@@ -36,6 +36,7 @@ Bytes StreamParts::Join() const {
   AppendPacket(stream, PacketType::kHeader, WriteSequenceHeader(header));
   AppendPacket(stream, PacketType::kIFrame, WriteIFrame(i_frame, header));
   for (const Bytes& group : groups) AppendPacket(stream, PacketType::kGroup, group);
+  for (const Bytes& group : open_groups) stream.insert(stream.end(), group.begin(), group.end());
   ByteWriter end;
   end.Varint(frames);
   AppendPacket(stream, PacketType::kEnd, end.bytes());
@@ -72,6 +73,9 @@ StreamParts Split(const Bytes& stream) {
       case PacketType::kEnd:
         parts.frames = reader.Varint();
         break;
+      case PacketType::kFrame:
+      case PacketType::kGroupEnd:
+        break;
     }
   }
   return parts;
@@ -106,6 +110,25 @@ Bytes CodeGroup(const StreamParts& parts, std::uint32_t frames, std::uint32_t py
   }
   payload.Bytes(range.Finish());
   return payload.bytes();
+}
+
+Bytes CodeOpenGroup(const StreamParts& parts, std::uint32_t frames,
+                    const std::function<void(std::uint32_t, FrameSyntax&)>& fill) {
+  RecordWriter records;
+  ByteWriter out;
+  out.Bytes(records.Open());
+  FrameCoder<RangeEncoder> coder(parts.header, parts.layouts);
+  for (std::uint32_t index = 0; index < frames; ++index) {
+    FrameSyntax frame;
+    frame.slot = ChainSlot(index);
+    frame.planes = EmptyPlanes(parts.layouts);
+    fill(index, frame);
+    RangeEncoder range;
+    if (!coder.Code(range, ChainSlot(index), frame)) std::exit(1);
+    out.Bytes(records.Frame(range.Finish()));
+  }
+  out.Bytes(records.End());
+  return out.bytes();
 }
 
 StreamParts SmallStream() {

@@ -27,9 +27,10 @@ struct Clip {
 struct StreamParts {
   SequenceHeader header;
   IFrameSyntax i_frame;
-  std::vector<Bytes> groups;  // payloads
-  std::uint32_t frames = 0;   // that the end packet says
-  PlaneLayouts layouts;       // see Derive()
+  std::vector<Bytes> groups;       // payloads
+  std::vector<Bytes> open_groups;  // after the others; packets and records
+  std::uint32_t frames = 0;        // that the end packet says
+  PlaneLayouts layouts;            // see Derive()
 
   Bytes Join() const;
 };
@@ -48,6 +49,10 @@ void AppendPacket(Bytes& stream, PacketType type, const Bytes& payload);
 // and zeros in it. Stops after a frame that the format does not allow, which is then in the code all the same.
 Bytes CodeGroup(const StreamParts& parts, std::uint32_t frames, std::uint32_t pyramid,
                 const std::function<void(std::uint32_t, FrameSyntax&)>& fill);
+
+// The packet of an open group and its records.
+Bytes CodeOpenGroup(const StreamParts& parts, std::uint32_t frames,
+                    const std::function<void(std::uint32_t, FrameSyntax&)>& fill);
 
 // Four vertices and two triangles without Draco's help, and three frames: the stream of spec.md, appendix A.
 StreamParts SmallStream();

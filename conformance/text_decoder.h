@@ -568,7 +568,8 @@ class TextStream {
       ByteReader reader(copy);
       if (tag % 4 == 0) ReadHeader(reader);
       if (tag % 4 == 1) ReadIFrame(reader);
-      if (tag % 4 == 2) ReadGroup(reader);
+      if (tag % 4 == 2 && copy == Bytes{0}) ReadOpenGroup(in);
+      if (tag % 4 == 2 && copy != Bytes{0}) ReadGroup(reader);
       if (tag % 4 == 3) {
         EXPECT_EQ(reader.Varint(), frames_.size());
       }
@@ -580,7 +581,7 @@ class TextStream {
  private:
   void ReadHeader(ByteReader& in) {
     EXPECT_EQ(in.U8(), 0);
-    EXPECT_EQ(in.U8(), 4);
+    EXPECT_EQ(in.U8(), 5);
     EXPECT_EQ(in.U8(), 0);  // reference_shape
     in.U8();                // position_bits
     growth_ = in.U8();
@@ -731,10 +732,7 @@ class TextStream {
     const auto rest = reader.Bytes(reader.remaining());
     const Bytes bytes(rest.begin(), rest.end());
     TextDecoder in(bytes);
-    std::vector<std::uint32_t> patch_sizes;
-    for (const Component& p : patches_) patch_sizes.push_back(p.count);
-    TextFrameReader reader_of_frames(counts_, detail_step_ > 0 ? patch_sizes : std::vector<std::uint32_t>(),
-                                     correction_step_ > 0 ? vertices_ : 0, growth_, true);
+    TextFrameReader reader_of_frames = NewFrameReader();
     std::vector<Eigen::MatrixXd> shown(frames);
     for (const FrameSlot& slot : GroupStructure(frames, pyramid)) {
       reader_of_frames.Read(in, slot);
@@ -742,6 +740,38 @@ class TextStream {
     }
     EXPECT_TRUE(in.AtEnd());
     frames_.insert(frames_.end(), shown.begin(), shown.end());
+  }
+
+  // Section 3.1: the records after the packet.
+  void ReadOpenGroup(ByteReader& in) {
+    TextFrameReader reader_of_frames = NewFrameReader();
+    Bytes all;  // that the CRC is of
+    for (std::uint32_t i = 0;; ++i) {
+      const std::size_t start = in.position();
+      const std::uint32_t record = in.Varint();
+      const auto code = in.Bytes(record > 0 ? record - 1 : 0);
+      const auto bytes = std::span(bytes_).subspan(start, in.position() - start);
+      all.insert(all.end(), bytes.begin(), bytes.end());
+      if (record == 0) {
+        EXPECT_EQ(in.U32(), Crc32(all));
+        return;
+      }
+      EXPECT_EQ(in.U8(), Crc32(all) % 256);
+      const Bytes copy(code.begin(), code.end());
+      TextDecoder frame(copy);
+      FrameSlot slot{i, 0, {}};
+      if (i > 0) slot.references = {i - 1};
+      reader_of_frames.Read(frame, slot);
+      frames_.push_back(Reconstruct(reader_of_frames.coefficients().back()));
+      EXPECT_TRUE(frame.AtEnd());
+    }
+  }
+
+  TextFrameReader NewFrameReader() const {
+    std::vector<std::uint32_t> patch_sizes;
+    for (const Component& p : patches_) patch_sizes.push_back(p.count);
+    return {counts_, detail_step_ > 0 ? patch_sizes : std::vector<std::uint32_t>(),
+            correction_step_ > 0 ? vertices_ : 0, growth_, true};
   }
 
   // Vertices x channels of a plane of harmonics.

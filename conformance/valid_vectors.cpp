@@ -125,6 +125,23 @@ Bytes Perverse() {
   return parts.Join();
 }
 
+// Open groups beside a whole one, with references to any earlier frame; one is empty. Without Draco, for the decoder
+// written from the text.
+Bytes OpenGroups() {
+  StreamParts parts = SmallStream();
+  std::mt19937 random(9);
+  const auto fill = [&](std::uint32_t i, FrameSyntax& frame) { FillAtRandom(random, nullptr, i, frame); };
+  const auto still = [](std::uint32_t, FrameSyntax&) {};
+  for (float* step : {&parts.header.motion_step, &parts.header.displacement_step, &parts.header.detail_step,
+                      &parts.header.correction_step, &parts.header.rotation_step, &parts.header.translation_step}) {
+    *step *= 1e-3f;
+  }
+  parts.open_groups = {CodeOpenGroup(parts, 7, fill), CodeOpenGroup(parts, 0, still), CodeOpenGroup(parts, 3, still),
+                       CodeOpenGroup(parts, 5, fill)};
+  parts.frames += 15;
+  return parts.Join();
+}
+
 Bytes PerversePrevious() {
   EncoderSettings settings;
   settings.harmonics = 12;
@@ -223,6 +240,16 @@ std::vector<ValidVector> ValidVectors() {
   fine.position_bits = 24;
   encode("fine", "a grid of 2^24 places, steps of one", Synth(SynthKind::kSphere, 60, 3), fine);
 
+  EncoderSettings low_delay = s;
+  low_delay.low_delay = true;
+  low_delay.group = 6;
+  encode("low_delay", "open groups, the last one short, texture coordinates", Synth(SynthKind::kFlag, 200, 16),
+         low_delay);
+  EncoderSettings low_delay_previous = low_delay;
+  low_delay_previous.reference_shape = ReferenceShape::kPrevious;
+  encode("low_delay_previous", "an open group against the frame before", Synth(SynthKind::kFlag, 100, 5),
+         low_delay_previous);
+  vectors.push_back({"open_groups", "a whole group, open groups with explicit references, one empty", OpenGroups()});
   vectors.push_back({"perverse",
                      "explicit references of all kinds, all magnitudes, level growth 2, levels above 2, a pyramid much "
                      "longer than its group",

@@ -28,4 +28,6 @@ std::vector<FrameSlot> GroupStructure(std::uint32_t frames, std::uint32_t pyrami
   return slots;
 }
 
+FrameSlot ChainSlot(std::uint32_t index) { return index == 0 ? FrameSlot{0, 0, {}} : FrameSlot{index, 0, {index - 1}}; }
+
 }  // namespace sac

@@ -18,4 +18,7 @@ struct FrameSlot {
 // is a chain of P-frames.
 std::vector<FrameSlot> GroupStructure(std::uint32_t frames, std::uint32_t pyramid);
 
+// The same slot of a chain of P-frames, whose length need not be known: of an open group.
+FrameSlot ChainSlot(std::uint32_t index);
+
 }  // namespace sac

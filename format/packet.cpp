@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "format/bytes.h"
 #include "format/crc32.h"
@@ -14,6 +15,79 @@ std::vector<std::uint8_t> WritePacket(PacketType type, std::span<const std::uint
   out.Bytes(payload);
   out.U32(Crc32(out.bytes()));
   return std::move(out.bytes());
+}
+
+std::vector<std::uint8_t> RecordWriter::Open() {
+  crc_ = 0;
+  return WritePacket(PacketType::kGroup, std::span(&kOpenGroup, 1));
+}
+
+std::vector<std::uint8_t> RecordWriter::Frame(std::span<const std::uint8_t> code) {
+  ByteWriter out;
+  out.Varint(static_cast<std::uint32_t>(code.size()) + 1);
+  out.Bytes(code);
+  crc_ = Crc32(out.bytes(), crc_);
+  out.U8(static_cast<std::uint8_t>(crc_));
+  return std::move(out.bytes());
+}
+
+std::vector<std::uint8_t> RecordWriter::End() {
+  ByteWriter out;
+  out.Varint(0);
+  crc_ = Crc32(out.bytes(), crc_);
+  out.U32(crc_);
+  return std::move(out.bytes());
+}
+
+Status Truncated(std::uint64_t bytes, std::uint64_t frames) {
+  if (bytes == 0) return Status::Corrupt("the stream is empty");
+  if (frames == 0) return Status::Corrupt("the stream is truncated before its first frame");
+  return Status::Corrupt("the stream is truncated after frame " + std::to_string(frames));
+}
+
+Status PacketReader::TakeTag() {
+  ByteReader reader(pending_);
+  const std::uint32_t tag = reader.Varint();
+  if (!reader.ok()) return Status::Corrupt("malformed packet size at byte " + std::to_string(position_));
+  tag_size_ = pending_.size();
+  std::uint32_t size = tag / 4;
+  crc_size_ = 4;
+  if (!in_open_group_) {
+    type_ = static_cast<PacketType>(tag & 3);
+  } else if (tag == 0) {
+    type_ = PacketType::kGroupEnd;
+    size = 0;
+  } else {
+    type_ = PacketType::kFrame;
+    size = tag - 1;
+    crc_size_ = 1;
+  }
+  if (size > limits_.packet_bytes) {
+    return Status::Limit("a packet of " + std::to_string(size) + " bytes, the limit is " +
+                         std::to_string(limits_.packet_bytes));
+  }
+  needed_ = tag_size_ + size + crc_size_;
+  return Status::Ok();
+}
+
+Status PacketReader::TakePacket(Packet& packet) {
+  const std::span<const std::uint8_t> whole(pending_), checked = whole.first(needed_ - crc_size_);
+  ByteReader reader(whole.last(crc_size_));
+  const std::uint32_t crc = Crc32(checked, in_open_group_ ? group_crc_ : 0);
+  const bool good = crc_size_ == 4 ? reader.U32() == crc : reader.U8() == (crc & 0xff);
+  if (!good) return Status::Corrupt("wrong checksum in the packet that ends at byte " + std::to_string(position_));
+  packet.type = type_;
+  packet.payload.assign(checked.begin() + static_cast<std::ptrdiff_t>(tag_size_), checked.end());
+  if (type_ == PacketType::kGroup) {
+    in_open_group_ = packet.payload.size() == 1 && packet.payload[0] == kOpenGroup;
+    group_crc_ = 0;
+  } else {
+    if (type_ == PacketType::kGroupEnd) in_open_group_ = false;
+    group_crc_ = crc;
+  }
+  pending_.clear();
+  needed_ = 0;
+  return Status::Ok();
 }
 
 Status PacketReader::Read(std::span<const std::uint8_t>& bytes, std::optional<Packet>& packet) {
@@ -36,30 +110,14 @@ Status PacketReader::Read(std::span<const std::uint8_t>& bytes, std::optional<Pa
     if (needed_ == 0) {
       take(1);
       const bool last_byte = (pending_.back() & 0x80) == 0;
-      if (!last_byte && pending_.size() < 5) continue;
-      ByteReader reader(pending_);
-      tag_ = reader.Varint();
-      if (!reader.ok()) return Status::Corrupt("malformed packet size at byte " + std::to_string(position_));
-      tag_size_ = pending_.size();
-      if (tag_ / 4 > limits_.packet_bytes) {
-        return Status::Limit("a packet of " + std::to_string(tag_ / 4) + " bytes, the limit is " +
-                             std::to_string(limits_.packet_bytes));
-      }
-      needed_ = tag_size_ + tag_ / 4 + 4;
+      if (last_byte || pending_.size() == 5) SAC_RETURN_IF_ERROR(TakeTag());
       continue;
     }
     take(std::min(bytes.size(), needed_ - pending_.size()));
     if (pending_.size() < needed_) continue;
-    const std::span<const std::uint8_t> whole(pending_);
-    ByteReader crc(whole.subspan(needed_ - 4));
-    if (crc.U32() != Crc32(whole.first(needed_ - 4))) {
-      return Status::Corrupt("wrong checksum in the packet that ends at byte " + std::to_string(position_));
-    }
-    packet.emplace(Packet{static_cast<PacketType>(tag_ & 3), {}});
-    const auto payload = whole.subspan(tag_size_, needed_ - 4 - tag_size_);
-    packet->payload.assign(payload.begin(), payload.end());
-    pending_.clear();
-    needed_ = 0;
+    Packet taken;
+    SAC_RETURN_IF_ERROR(TakePacket(taken));
+    packet = std::move(taken);
     return Status::Ok();
   }
   return Status::Ok();

@@ -18,17 +18,42 @@ enum class PacketType : std::uint8_t {
   kIFrame = 1,  // the first frame's mesh and the basis, second
   kGroup = 2,   // frames
   kEnd = 3,     // number of frames, last
+  // These have no tag: they are the records that follow the packet of an open group.
+  kFrame = 4,     // one frame of it
+  kGroupEnd = 5,  // no more of them
 };
 
 struct Packet {
-  PacketType type;
+  PacketType type = PacketType::kHeader;
   std::vector<std::uint8_t> payload;
 };
 
 // The bytes of a packet (spec.md 3): varint(payload size * 4 + type), payload, CRC-32 of both.
 std::vector<std::uint8_t> WritePacket(PacketType type, std::span<const std::uint8_t> payload);
 
-// Cuts a stream, which may arrive in any chunking, into packets. Holds the bytes of at most one packet.
+// The payload of a group packet that opens a group: its frames follow in records of their own, as they come, until the
+// record that ends it (spec.md 3.1).
+inline constexpr std::uint8_t kOpenGroup = 0;
+
+// The records of an open group.
+class RecordWriter {
+ public:
+  // The packet that opens the group.
+  std::vector<std::uint8_t> Open();
+  // varint(size + 1), the code, one byte of the CRC-32 of all so far.
+  std::vector<std::uint8_t> Frame(std::span<const std::uint8_t> code);
+  // varint(0), the CRC-32 of all.
+  std::vector<std::uint8_t> End();
+
+ private:
+  std::uint32_t crc_ = 0;
+};
+
+// The error of a stream that ends before its end packet, after so many bytes and frames.
+Status Truncated(std::uint64_t bytes, std::uint64_t frames);
+
+// Cuts a stream, which may arrive in any chunking, into packets and the records of open groups. Holds the bytes of
+// at most one.
 class PacketReader {
  public:
   explicit PacketReader(const Limits& limits) : limits_(limits) {}
@@ -37,17 +62,25 @@ class PacketReader {
   // latter case. kCorrupt: not a .sac stream, a malformed tag or a wrong CRC; kLimit: a packet over the limit.
   Status Read(std::span<const std::uint8_t>& bytes, std::optional<Packet>& packet);
 
-  // Whether the stream could end here: no packet has begun.
-  bool AtBoundary() const { return magic_seen_ && pending_.empty(); }
+  // Whether the stream could end here: no packet has begun, no group is open.
+  bool AtBoundary() const { return magic_seen_ && pending_.empty() && !in_open_group_; }
   // Bytes taken so far.
   std::uint64_t position() const { return position_; }
 
  private:
+  // Judges the tag, or the size of a record, that is pending.
+  Status TakeTag();
+  // Judges the checksum and makes a packet of what is pending.
+  Status TakePacket(Packet& packet);
+
   Limits limits_;
-  std::vector<std::uint8_t> pending_;  // of the magic, then of a packet
+  std::vector<std::uint8_t> pending_;  // of the magic, then of a packet or record
   std::size_t needed_ = 0;             // bytes of the whole packet once its tag is known, else 0
   std::size_t tag_size_ = 0;
-  std::uint32_t tag_ = 0;
+  std::size_t crc_size_ = 4;
+  PacketType type_ = PacketType::kHeader;
+  bool in_open_group_ = false;
+  std::uint32_t group_crc_ = 0;  // of the open group so far
   bool magic_seen_ = false;
   std::uint64_t position_ = 0;
 };

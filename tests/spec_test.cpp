@@ -8,6 +8,8 @@
 #include <cmath>
 #include <cstdint>
 #include <cstdio>
+#include <fstream>
+#include <iterator>
 #include <numeric>
 #include <random>
 #include <set>
@@ -57,6 +59,7 @@ const std::set<std::string> kRun = {"classes",
                                     "packet",
                                     "patches",
                                     "range-coder",
+                                    "records",
                                     "reduced",
                                     "state",
                                     "stream",
@@ -103,6 +106,24 @@ TEST(Spec, Packet) {
     ByteWriter payload;
     payload.Varint(static_cast<std::uint32_t>(std::stoul(frames)));
     EXPECT_EQ(Hex(WritePacket(PacketType::kEnd, payload.bytes())), bytes);
+  }
+}
+
+TEST(Spec, Records) {
+  RecordWriter records;
+  records.Open();
+  for (const std::string& line : Example("records")) {
+    const auto [what, bytes] = Equation(line);
+    if (what == "end") {
+      EXPECT_EQ(Hex(records.End()), bytes);
+      continue;
+    }
+    std::vector<std::uint8_t> code;
+    const auto words = Words(what);
+    for (std::size_t i = 1; i < words.size(); ++i) {
+      code.push_back(static_cast<std::uint8_t>(std::stoul(words[i], nullptr, 16)));
+    }
+    EXPECT_EQ(Hex(records.Frame(code)), bytes);
   }
 }
 
@@ -494,6 +515,30 @@ TEST(Spec, TextReadsTheWholeStream) {
                   row[2 + a], 1e-6);
     }
   }
+}
+
+// Open groups beside a whole one.
+TEST(Spec, TextReadsOpenGroups) {
+  std::ifstream file(SAC_CONFORMANCE "/valid/open_groups.sac", std::ios::binary);
+  const Bytes bytes{std::istreambuf_iterator<char>(file), {}};
+  TextStream stream(bytes);
+  const std::vector<Eigen::MatrixXd> frames = stream.Decode();
+  Decoder decoder;
+  std::size_t count = 0;
+  for (std::span<const std::uint8_t> rest(bytes); !rest.empty();) {
+    const Status status = decoder.Send(rest);
+    ASSERT_TRUE(status.ok()) << status.message();
+    for (DecodedFrame frame; decoder.Receive(frame).ok(); ++count) {
+      for (std::size_t v = 0; v < frame.positions.size(); ++v) {
+        for (std::size_t a = 0; a < 3; ++a) {
+          EXPECT_NEAR(frame.positions[v][a], frames.at(count)(static_cast<int>(v), static_cast<int>(a)), 1e-5) << count;
+        }
+      }
+    }
+  }
+  EXPECT_TRUE(decoder.Finish().ok());
+  EXPECT_EQ(count, 18u);
+  EXPECT_EQ(frames.size(), 18u);
 }
 
 TEST(Spec, DecoderReadsTheWholeStream) {

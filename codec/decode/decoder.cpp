@@ -45,7 +45,12 @@ class Decoder::Impl {
   Status Take(Packet packet);
   Status TakeIFrame(std::span<const std::uint8_t> payload);
   Status TakeGroup(std::span<const std::uint8_t> payload);
+  Status TakeFrame(std::span<const std::uint8_t> payload);
   Status TakeEnd(std::span<const std::uint8_t> payload);
+  // Whether a group of so many frames is within the limits.
+  Status CheckGroupSize(std::uint32_t frames) const;
+  // Parses the frame of `slot`; `is_last` one of the range code.
+  Status ParseFrame(const FrameSlot& slot, RangeDecoder& range, FrameCoder<RangeDecoder>& coder, bool& intra) const;
   Status DecodeFrame(DecodedFrame& frame);
   Status Latch(Status status) {
     if (!status.ok()) error_ = status;
@@ -65,6 +70,8 @@ class Decoder::Impl {
   std::vector<FrameCoefficients> group_;
   std::vector<bool> group_intra_;
   std::size_t next_in_group_ = 0;
+
+  std::optional<FrameCoder<RangeDecoder>> open_group_;  // whose frames come one by one
 };
 
 Status Decoder::Impl::Send(std::span<const std::uint8_t>& bytes) {
@@ -99,6 +106,11 @@ Status Decoder::Impl::Take(Packet packet) {
     case PacketType::kEnd:
       if (!mesh) return Status::Corrupt("the end before the I-frame");
       return TakeEnd(packet.payload);
+    case PacketType::kFrame:
+      return TakeFrame(packet.payload);
+    case PacketType::kGroupEnd:
+      open_group_.reset();
+      return Status::Ok();
   }
   return Status::Corrupt("unknown packet");
 }
@@ -129,10 +141,7 @@ Status Decoder::Impl::TakeIFrame(std::span<const std::uint8_t> payload) {
   return Status::Ok();
 }
 
-Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload) {
-  ByteReader reader(payload);
-  const std::uint32_t frames = reader.Varint();
-  if (!reader.ok() || frames == 0) return Status::Corrupt("group: malformed number of frames");
+Status Decoder::Impl::CheckGroupSize(std::uint32_t frames) const {
   if (frames > limits_.frames_per_group) {
     return Status::Limit(std::to_string(frames) + " frames in a group, the limit is " +
                          std::to_string(limits_.frames_per_group));
@@ -140,6 +149,31 @@ Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload) {
   if (frames * FrameValues(shape_.layouts) > limits_.group_values) {
     return Status::Limit("a group holds more coefficients than the limit");
   }
+  return Status::Ok();
+}
+
+Status Decoder::Impl::ParseFrame(const FrameSlot& slot, RangeDecoder& range, FrameCoder<RangeDecoder>& coder,
+                                 bool& intra) const {
+  FrameSyntax frame;
+  if (!coder.Code(range, slot, frame)) return Status::Corrupt("malformed coefficients");
+  const bool previous = header->reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious);
+  if (previous && !frame.intra() && frame.slot.references != slot.references) {
+    return Status::Corrupt("not predicted from the frame before");
+  }
+  intra = frame.intra();
+  return Status::Ok();
+}
+
+Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload) {
+  ByteReader reader(payload);
+  const std::uint32_t frames = reader.Varint();
+  const bool opens = frames == kOpenGroup && reader.remaining() == 0;
+  if (!reader.ok() || (frames == 0 && !opens)) return Status::Corrupt("group: malformed number of frames");
+  if (opens) {
+    open_group_.emplace(*header, shape_.layouts);
+    return reconstructor_->StartGroup() ? Status::Ok() : Status::Corrupt("the first frame's shape is singular");
+  }
+  SAC_RETURN_IF_ERROR(CheckGroupSize(frames));
   if (frames > 0xffffffffu - frame_count_) return Status::Corrupt("group: too many frames");
   const std::uint32_t pyramid = reader.Varint();
   if (!reader.ok() || pyramid == 0) return Status::Corrupt("group: malformed pyramid");
@@ -153,18 +187,32 @@ Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload) {
   group_intra_.assign(frames, false);
   next_in_group_ = frames;  // none is ready before all are parsed
   for (const FrameSlot& slot : structure) {
-    const auto where = [&] { return "frame " + std::to_string(frame_count_ + slot.display) + ": "; };
-    FrameSyntax frame;
-    if (!coder.Code(range, slot, frame)) return Status::Corrupt(where() + "malformed coefficients");
-    if (previous && !frame.intra() && frame.slot.references != slot.references) {
-      return Status::Corrupt(where() + "not predicted from the frame before");
+    bool intra = false;
+    if (const Status s = ParseFrame(slot, range, coder, intra); !s.ok()) {
+      return {s.code(), "frame " + std::to_string(frame_count_ + slot.display) + ": " + s.message()};
     }
-    group_intra_[slot.display] = frame.intra();
+    group_intra_[slot.display] = intra;
   }
   if (!range.AtEnd()) return Status::Corrupt("group: bytes after the last frame");
   std::vector<FrameCoefficients> coded = coder.TakeFrames();
   for (std::size_t i = 0; i < structure.size(); ++i) group_[structure[i].display] = std::move(coded[i]);
   if (!reconstructor_->StartGroup()) return Status::Corrupt("the first frame's shape is singular");
+  next_in_group_ = 0;
+  return Status::Ok();
+}
+
+Status Decoder::Impl::TakeFrame(std::span<const std::uint8_t> payload) {
+  const auto index = static_cast<std::uint32_t>(open_group_->predictor().frames().size());
+  SAC_RETURN_IF_ERROR(CheckGroupSize(index + 1));
+  if (frame_count_ == 0xffffffffu) return Status::Corrupt("group: too many frames");
+  const auto where = [&] { return "frame " + std::to_string(frame_count_) + ": "; };
+  RangeDecoder range(payload);
+  bool intra = false;
+  const Status s = ParseFrame(ChainSlot(index), range, *open_group_, intra);
+  if (!s.ok()) return {s.code(), where() + s.message()};
+  if (!range.AtEnd()) return Status::Corrupt(where() + "bytes after its end");
+  group_.assign(1, open_group_->predictor().frames().back());
+  group_intra_.assign(1, intra);
   next_in_group_ = 0;
   return Status::Ok();
 }
@@ -210,7 +258,7 @@ Status Decoder::Impl::DecodeFrame(DecodedFrame& out) {
 Status Decoder::Impl::Finish() {
   if (error_) return *error_;
   if (!ended_ || next_in_group_ < group_.size()) {
-    return Latch(Status::Corrupt("the stream is truncated after frame " + std::to_string(frame_count_)));
+    return Latch(Truncated(packets_.position(), frame_count_));
   }
   return Status::Ok();
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <utility>
@@ -188,7 +189,14 @@ class Encoder::Impl {
 
  private:
   void Append(PacketType type, std::span<const std::uint8_t> payload, double StreamBytes::*part);
+  void Append(std::span<const std::uint8_t> more, double StreamBytes::*part);
+  // Whole bytes for the planes of what was appended last, the rest stays side information.
+  void Account(const FrameBits& bits, double side_before);
+  bool IsFull(std::uint32_t frames) const;
   Status FlushGroup();
+  // Low delay.
+  Status SendNow(PositionMatrix positions);
+  void EndOpenGroup();
 
   EncoderSettings settings_;
   Shape shape_;
@@ -196,6 +204,12 @@ class Encoder::Impl {
   std::vector<PositionMatrix> group_;  // frames that wait for the group to be full
   std::uint32_t frame_count_ = 0;
   bool finished_ = false;
+
+  // The open group, with low delay.
+  RecordWriter records_;
+  std::optional<FrameCoder<RangeEncoder>> coder_;
+  std::uint32_t open_frames_ = 0;
+  Status failure_;  // half a frame has been coded
 };
 
 Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) {
@@ -259,29 +273,69 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
 }
 
 void Encoder::Impl::Append(PacketType type, std::span<const std::uint8_t> payload, double StreamBytes::*part) {
-  const std::vector<std::uint8_t> packet = WritePacket(type, payload);
-  bytes.insert(bytes.end(), packet.begin(), packet.end());
-  stream_bytes.*part += static_cast<double>(packet.size());
+  Append(WritePacket(type, payload), part);
+}
+
+void Encoder::Impl::Append(std::span<const std::uint8_t> more, double StreamBytes::*part) {
+  bytes.insert(bytes.end(), more.begin(), more.end());
+  stream_bytes.*part += static_cast<double>(more.size());
+}
+
+void Encoder::Impl::Account(const FrameBits& bits, double side_before) {
+  for (std::size_t p = 0; p < kPlanes; ++p) {
+    const double plane = std::min(std::round(bits.planes[p] / 8), stream_bytes.side - side_before);
+    stream_bytes.side -= plane;
+    stream_bytes.planes[p] += plane;
+  }
 }
 
 Status Encoder::Impl::Send(std::span<const Vec3f> positions) {
   if (finished_) return Status::InvalidArgument("the stream is finished");
+  SAC_RETURN_IF_ERROR(failure_);
   if (positions.size() != order.size()) {
     return Status::InvalidArgument(std::to_string(positions.size()) + " vertices, expected " +
                                    std::to_string(order.size()));
   }
   SAC_RETURN_IF_ERROR(CheckFinite(positions));
-  PositionMatrix& ordered = group_.emplace_back(static_cast<Eigen::Index>(order.size()), 3);
+  PositionMatrix ordered(static_cast<Eigen::Index>(order.size()), 3);
   for (std::size_t v = 0; v < order.size(); ++v) {
     const Vec3f& p = positions[order[v]];
     ordered.row(static_cast<Eigen::Index>(v)) << static_cast<double>(p[0]), static_cast<double>(p[1]),
         static_cast<double>(p[2]);
   }
   ++frame_count_;
-  // A group is no longer than any decoder takes by default.
-  const bool full =
-      group_.size() == settings_.group || (group_.size() + 1) * FrameValues(shape_.layouts) > Limits{}.group_values;
-  return full ? FlushGroup() : Status::Ok();
+  if (settings_.low_delay) return failure_ = SendNow(std::move(ordered));
+  group_.push_back(std::move(ordered));
+  return IsFull(static_cast<std::uint32_t>(group_.size())) ? FlushGroup() : Status::Ok();
+}
+
+// A group is no longer than any decoder takes by default.
+bool Encoder::Impl::IsFull(std::uint32_t frames) const {
+  return frames == settings_.group || (std::uint64_t{frames} + 1) * FrameValues(shape_.layouts) > Limits{}.group_values;
+}
+
+Status Encoder::Impl::SendNow(PositionMatrix positions) {
+  if (open_frames_ == 0) {
+    Append(records_.Open(), &StreamBytes::side);
+    coder_.emplace(header, shape_.layouts);
+  }
+  FrameSyntax frame;
+  SAC_RETURN_IF_ERROR(encoder_->EncodeNext(std::move(positions), open_frames_, frame));
+  RangeEncoder range;  // each frame ends with a whole byte; the models go on
+  FrameBits bits;
+  if (!coder_->Code(range, ChainSlot(open_frames_), frame, &bits)) {
+    return Status::InvalidArgument("the motion is too far from the first frame for these steps");
+  }
+  const double before = stream_bytes.side;
+  Append(records_.Frame(range.Finish()), &StreamBytes::side);
+  Account(bits, before);
+  if (IsFull(++open_frames_)) EndOpenGroup();
+  return Status::Ok();
+}
+
+void Encoder::Impl::EndOpenGroup() {
+  if (open_frames_ > 0) Append(records_.End(), &StreamBytes::side);
+  open_frames_ = 0;
 }
 
 Status Encoder::Impl::FlushGroup() {
@@ -305,18 +359,15 @@ Status Encoder::Impl::FlushGroup() {
   payload.Bytes(range.Finish());
   const double before = stream_bytes.side;
   Append(PacketType::kGroup, payload.bytes(), &StreamBytes::side);
-  // Whole bytes for the planes, the rest is side information.
-  for (std::size_t p = 0; p < kPlanes; ++p) {
-    const double plane = std::min(std::round(bits.planes[p] / 8), stream_bytes.side - before);
-    stream_bytes.side -= plane;
-    stream_bytes.planes[p] += plane;
-  }
+  Account(bits, before);
   group_.clear();
   return Status::Ok();
 }
 
 Status Encoder::Impl::Finish() {
   if (finished_) return Status::InvalidArgument("the stream is finished");
+  SAC_RETURN_IF_ERROR(failure_);
+  EndOpenGroup();
   if (!group_.empty()) SAC_RETURN_IF_ERROR(FlushGroup());
   ByteWriter payload;
   payload.Varint(frame_count_);

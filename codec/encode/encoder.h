@@ -22,6 +22,8 @@ struct EncoderSettings {
   std::uint32_t group = 128;               // frames between points of random access
   std::uint32_t pyramid = 16;              // frames of a hierarchy of B-frames; 1: P-frames only
   double level_growth = 1.2;               // of the planes' steps from level to level of a pyramid, 1..2
+  // P-frames only, each coded as it is sent; `pyramid` says nothing then. At most 3 bytes of framing a frame.
+  bool low_delay = false;
   ReferenceShape reference_shape = ReferenceShape::kKey;  // `previous` has P-frames only
   std::optional<double> motion_step;                      // radians and strain
   std::optional<double> displacement_step;                // fraction of the first frame's RMS radius
@@ -41,7 +43,8 @@ struct StreamBytes {
   double side = 0;  // rigid motion, frame types, packet framing of groups
 };
 
-// Turns frames into a stream, one at a time. Holds one group, not the clip.
+// Turns frames into a stream, one at a time. Holds one group, not the clip. With low_delay a frame's bytes can be taken
+// as soon as it is sent; otherwise those of a group when it is full.
 //
 //   std::unique_ptr<sac::Encoder> encoder;
 //   status = sac::Encoder::Create(mesh, settings, encoder);   // mesh: the first frame with its triangles

@@ -100,16 +100,23 @@ std::vector<GroupEncoder::Rigid> GroupEncoder::ChooseRigid(const std::vector<Pos
   for (const PositionMatrix& positions : frames) targets.push_back(FitTarget(positions));
   std::vector<Rigid> rigid(frames.size());
   for (const FrameSlot& slot : structure) {
-    const RigidTarget& target = targets[slot.display];
-    for (std::size_t i = 0; i < 6; ++i) {
-      std::int64_t sum = 0;
-      for (const std::uint32_t r : slot.references) sum += rigid[structure[r].display][i];
-      const std::int64_t prediction = slot.references.size() == 2 ? (sum + 1) >> 1 : sum;
-      const bool near = std::abs(target.value[i] - static_cast<double>(prediction)) <= target.slack;
-      rigid[slot.display][i] = near ? static_cast<std::int32_t>(prediction) : Rounded(target.value[i]);
-    }
+    rigid[slot.display] = ChooseRigid(targets[slot.display], slot, structure, rigid);
   }
   return rigid;
+}
+
+GroupEncoder::Rigid GroupEncoder::ChooseRigid(const RigidTarget& target, const FrameSlot& slot,
+                                              const std::vector<FrameSlot>& structure,
+                                              const std::vector<Rigid>& rigid) {
+  Rigid chosen;
+  for (std::size_t i = 0; i < 6; ++i) {
+    std::int64_t sum = 0;
+    for (const std::uint32_t r : slot.references) sum += rigid[structure[r].display][i];
+    const std::int64_t prediction = slot.references.size() == 2 ? (sum + 1) >> 1 : sum;
+    const bool near = std::abs(target.value[i] - static_cast<double>(prediction)) <= target.slack;
+    chosen[i] = near ? static_cast<std::int32_t>(prediction) : Rounded(target.value[i]);
+  }
+  return chosen;
 }
 
 Status GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
@@ -124,30 +131,57 @@ Status GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std
     }
   }
 
-  // 2. In coding order: predict, quantize, and ask the decoder's reconstruction what is left for the next plane.
+  // 2. In coding order.
   Predictor predictor(header_, shape_.layouts);
   for (const FrameSlot& slot : structure) {
-    const PositionMatrix& positions = frames[slot.display];
-    FrameSyntax& frame = coded.emplace_back();
-    frame.slot = slot;
-    frame.planes = EmptyPlanes(shape_.layouts);
-    if (!reconstructor_.StartFrame(slot.references.empty())) return TooFar();
-    const bool repeats = RepeatFrame(frames, structure, predictor, frame);
-    if (!repeats) {
-      const PositionMatrix aligned = reconstructor_.RemoveRigid(positions, rigid[slot.display]);
-      if (!UsesKeyReference()) motion_targets[slot.display] = MeasureMotion(aligned);
-      SAC_RETURN_IF_ERROR(ChoosePlanes(positions, rigid[slot.display], motion_targets[slot.display], predictor, frame));
-      const FrameCoefficients prediction = predictor.Predict(frame.slot);
-      for (std::size_t i = 0; i < 6; ++i) frame.rigid[i] = rigid[slot.display][i] - prediction.rigid[i];
-    }
-    if (!predictor.Add(frame)) return TooFar();
-    // The next frame may be measured against this one.
-    if (repeats && !UsesKeyReference()) reconstructor_.Reconstruct(predictor.frames().back());
+    SAC_RETURN_IF_ERROR(EncodeSlot(frames, structure, rigid[slot.display], std::move(motion_targets[slot.display]),
+                                   predictor, coded.emplace_back()));
   }
   last_positions_ = frames.back();
   for (std::size_t i = 0; i < structure.size(); ++i) {
     if (structure[i].display + 1 == frames.size()) last_ = predictor.frames()[i];
   }
+  return Status::Ok();
+}
+
+Status GroupEncoder::EncodeNext(PositionMatrix positions, std::uint32_t index, FrameSyntax& frame) {
+  if (index == 0) {
+    chain_.emplace(Chain{{}, {}, {}, Predictor(header_, shape_.layouts)});
+    if (!reconstructor_.StartGroup()) return TooFar();
+  }
+  Chain& chain = *chain_;
+  const FrameSlot& slot = chain.structure.emplace_back(ChainSlot(index));
+  const Rigid rigid = ChooseRigid(FitTarget(positions), slot, chain.structure, chain.rigid);
+  chain.rigid.push_back(rigid);
+  chain.frames.push_back(std::move(positions));
+  Eigen::MatrixXd motion_target;
+  if (UsesKeyReference()) motion_target = MeasureMotion(reconstructor_.RemoveRigid(chain.frames.back(), rigid));
+  SAC_RETURN_IF_ERROR(
+      EncodeSlot(chain.frames, chain.structure, rigid, std::move(motion_target), chain.predictor, frame));
+  last_positions_ = chain.frames.back();
+  last_ = chain.predictor.frames().back();
+  return Status::Ok();
+}
+
+Status GroupEncoder::EncodeSlot(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
+                                const Rigid& rigid, Eigen::MatrixXd motion_target, Predictor& predictor,
+                                FrameSyntax& frame) {
+  // Predict, quantize, and ask the decoder's reconstruction what is left for the next plane.
+  const FrameSlot& slot = structure[predictor.frames().size()];
+  const PositionMatrix& positions = frames[slot.display];
+  frame.slot = slot;
+  frame.planes = EmptyPlanes(shape_.layouts);
+  if (!reconstructor_.StartFrame(slot.references.empty())) return TooFar();
+  const bool repeats = RepeatFrame(frames, structure, predictor, frame);
+  if (!repeats) {
+    if (!UsesKeyReference()) motion_target = MeasureMotion(reconstructor_.RemoveRigid(positions, rigid));
+    SAC_RETURN_IF_ERROR(ChoosePlanes(positions, rigid, motion_target, predictor, frame));
+    const FrameCoefficients prediction = predictor.Predict(frame.slot);
+    for (std::size_t i = 0; i < 6; ++i) frame.rigid[i] = rigid[i] - prediction.rigid[i];
+  }
+  if (!predictor.Add(frame)) return TooFar();
+  // The next frame may be measured against this one.
+  if (repeats && !UsesKeyReference()) reconstructor_.Reconstruct(predictor.frames().back());
   return Status::Ok();
 }
 

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "codec/encode/projection.h"
@@ -30,6 +31,10 @@ class GroupEncoder {
   Status Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
                 std::vector<FrameSyntax>& coded);
 
+  // The same for a chain of P-frames whose next is not known yet. Index 0 begins a group. After an error the group
+  // cannot go on.
+  Status EncodeNext(PositionMatrix positions, std::uint32_t index, FrameSyntax& frame);
+
  private:
   // A rigid motion before quantization: rotation vector and translation in the header's steps, and how far a choice may
   // stay from it.
@@ -43,6 +48,13 @@ class GroupEncoder {
   std::vector<Rigid> ChooseRigid(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure);
   // The motion plane's coefficients of `aligned` against the present reference shape, in real numbers.
   Eigen::MatrixXd MeasureMotion(const PositionMatrix& aligned);
+  // The rigid motion of one frame, given those by time that come before it in coding order.
+  static Rigid ChooseRigid(const RigidTarget& target, const FrameSlot& slot, const std::vector<FrameSlot>& structure,
+                           const std::vector<Rigid>& rigid);
+  // Chooses the syntax of the frame at the end of `predictor` and adds it there. `motion_target` is measured here
+  // unless there is one reference shape.
+  Status EncodeSlot(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
+                    const Rigid& rigid, Eigen::MatrixXd motion_target, Predictor& predictor, FrameSyntax& frame);
   // Makes `frame` repeat an earlier one exactly if its input does; false if it does not.
   bool RepeatFrame(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
                    const Predictor& predictor, FrameSyntax& frame) const;
@@ -62,6 +74,14 @@ class GroupEncoder {
   std::array<Eigen::VectorXd, 3> units_;  // of the planes in harmonics
   double max_error_;
   Reconstructor reconstructor_;
+  // The group that EncodeNext is in.
+  struct Chain {
+    std::vector<PositionMatrix> frames;
+    std::vector<FrameSlot> structure;
+    std::vector<Rigid> rigid;
+    Predictor predictor;
+  };
+  std::optional<Chain> chain_;
   Eigen::Vector3d last_rotation_ = Eigen::Vector3d::Zero();
   // The last frame of the group before, to stand still across the border.
   PositionMatrix last_positions_;

@@ -76,7 +76,7 @@ TEST_F(ReportTest, InfoOfDamagedStreams) {
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(nlohmann::json::parse(outcome.out)["error"], "longer.sac: bytes after the end of the stream");
   directory_.Write("empty.sac", "");
-  ExpectFailure({"info", "empty.sac"}, 1, "empty.sac: the stream is truncated after frame 0");
+  ExpectFailure({"info", "empty.sac"}, 1, "empty.sac: the stream is empty");
   ExpectFailure({"info", "in.obj"}, 1, "in.obj: not a .sac stream");
   ExpectFailure({"info", "absent.sac"}, 1, "absent.sac: No such file or directory");
   ExpectFailure({"info", "."}, 1, ".: Is a directory");
