@@ -95,6 +95,7 @@ Status CheckedEncoding::Check() {
     progress.FramesDone(frame.index + 1);
   }
   if (!undecoded_.empty()) return Status::Corrupt(name + ": a frame is missing");
+  lost_texture_coordinates_ = !input_->mesh().uv_triangles.empty() && decoded.decoder().mesh()->uv_triangles.empty();
   distortion_ = meter.Result();
   return Status::Ok();
 }

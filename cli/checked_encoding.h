@@ -43,6 +43,8 @@ class CheckedEncoding {
   const StreamBytes& parts() const { return encoder_->stream_bytes(); }
   std::uint64_t bytes() const { return bytes_; }
   const DistortionMetrics& distortion() const { return distortion_; }
+  // The input's texture coordinates could not be coded: the stream has none.
+  bool lost_texture_coordinates() const { return lost_texture_coordinates_; }
   // That were made to find the settings.
   std::uint32_t trials() const { return trials_; }
 
@@ -60,6 +62,7 @@ class CheckedEncoding {
   std::vector<std::uint8_t> chunk_;
   std::uint64_t bytes_ = 0;
   std::uint32_t trials_ = 0;
+  bool lost_texture_coordinates_ = false;
   bool finished_ = false;
   std::uint32_t sent_ = 0;
   std::deque<Positions> undecoded_;  // frames sent that have not come back yet

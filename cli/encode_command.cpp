@@ -142,6 +142,10 @@ Status Encode(const EncodeOptions& options) {
   CheckedEncoding encoding(options.settings);
   SAC_RETURN_IF_ERROR(encoding.Run());
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  if (encoding.lost_texture_coordinates()) {
+    std::fprintf(stderr, "sac: warning: %s: its texture coordinates cannot be coded, the stream has none\n",
+                 options.settings.inputs.front().c_str());
+  }
   std::FILE* file = IsStandardOutput(options.settings.output) ? stderr : stdout;
   const Json json = ToJson(options, encoding, seconds);
   if (options.json) {

@@ -72,6 +72,18 @@ TEST(Encoder, MalformedMeshesAreRefused) {
        [](auto& m) {
          m.uvs.resize(1), m.uv_triangles.resize(20, {0, 0, 1});
        }},
+      {"texture too large",
+       [](auto& m) {
+         m.uvs = {{0, 0}, {3e38f, 0}, {-3e38f, 1}}, m.uv_triangles.resize(20, {0, 1, 2});
+       }},
+      {"texture not a number",
+       [](auto& m) {
+         m.uvs = {{0, kNan}}, m.uv_triangles.resize(20, {0, 0, 0});
+       }},
+      {"normals not numbers",
+       [](auto& m) {
+         m.normals.resize(12, {0, kNan, 1});
+       }},
       {"too large",
        [](auto& m) {
          m.positions[0] = {3e38f, 0, 0}, m.positions[1] = {-3e38f, 0, 0};

@@ -71,6 +71,14 @@ Status CheckMesh(const Mesh& mesh) {
   if ((!mesh.normals.empty() && mesh.normals.size() != n) || (!mesh.colors.empty() && mesh.colors.size() != n)) {
     return Status::InvalidArgument("normals or colours for some vertices only");
   }
+  // Draco ends the program when what it quantizes has no finite extent.
+  const auto moderate = [](const auto& values) {
+    return std::all_of(values.begin(), values.end(), [](const auto& value) {
+      return std::all_of(value.begin(), value.end(), [](float x) { return std::abs(x) <= 1e37f; });
+    });
+  };
+  if (!moderate(mesh.uvs)) return Status::InvalidArgument("texture coordinates beyond 1e37, or not numbers");
+  if (!moderate(mesh.normals)) return Status::InvalidArgument("normals beyond 1e37, or not numbers");
   return Status::Ok();
 }
 

@@ -89,6 +89,8 @@ TEST_F(EncodeTest, OptionsReachTheEncoder) {
                                                                                       {"--motion-step", "0.2"},
                                                                                       {"--displacement-step", "0.01"},
                                                                                       {"--position-bits", "7"},
+                                                                                      {"--samples-per-harmonic", "3"},
+                                                                                      {"--low-delay"},
                                                                                       {"--keep-order"}}) {
     std::vector<std::string> arguments{"encode", "in.obj", "in.pc2", "-o", "other.sac"};
     if (option[0] != "--harmonics") arguments.insert(arguments.end(), {"--harmonics", "30"});
@@ -159,6 +161,42 @@ TEST_F(EncodeTest, WritesToStandardOutput) {
   EXPECT_EQ(outcome.code, 0);
   EXPECT_EQ(outcome.out, Read("clip.sac"));
   EXPECT_EQ(nlohmann::json::parse(outcome.err)["bytes"], outcome.out.size());
+}
+
+// The bytes of a frame are there before the next frame is read.
+TEST_F(EncodeTest, LowDelay) {
+  const nlohmann::json report = EncodeJson("clip.sac", {"--low-delay"});
+  EXPECT_EQ(report["settings"]["low_delay"], true);
+  EXPECT_EQ(report["settings"]["pyramid"], 1);
+  EXPECT_EQ(report["bytes"], Read("clip.sac").size());
+  const nlohmann::json info = GoodJson({"info", "clip.sac", "--json"});
+  EXPECT_EQ(info["frames"], 12);
+  EXPECT_EQ(info["groups"], 3);
+  EXPECT_EQ(info["packets"][2]["frames"], 5);
+  EXPECT_EQ(info["packets"][2]["low_delay"], true);
+  std::uint64_t bytes = 4;
+  for (const nlohmann::json& packet : info["packets"]) bytes += packet["bytes"].get<std::uint64_t>();
+  EXPECT_EQ(bytes, Read("clip.sac").size());
+  EXPECT_NE(Good({"info", "clip.sac"}).find("2 frames, low delay\n"), std::string::npos);
+  Encode("whole.sac", {"--pyramid", "1"});
+  EXPECT_EQ(GoodJson({"info", "whole.sac", "--json"})["packets"][2]["low_delay"], false);
+  Good({"decode", "clip.sac", "-o", "clip.pc2"});
+  Good({"decode", "whole.sac", "-o", "whole.pc2"});
+  EXPECT_EQ(Read("clip.pc2"), Read("whole.pc2"));
+  // Cut in the second group: its frames so far come out before the error.
+  directory_.Write("cut.sac", Read("clip.sac").substr(0, Read("clip.sac").size() - 60));
+  const Outcome cut = Sac({"decode", "cut.sac", "-o", "m_%02d.obj", "--frames", "0:8"});
+  EXPECT_EQ(cut.code, 0) << cut.err;
+  ExpectFailure({"encode", "in.obj", "in.pc2", "-o", "x.sac", "--low-delay", "--pyramid", "4"}, 2,
+                "--pyramid excludes --low-delay (see sac encode --help)");
+}
+
+TEST_F(EncodeTest, SaysThatTextureCoordinatesAreLost) {
+  directory_.Write("m.obj", "v 0 0 0\nv 1 0 0\nvt 0 0\nvt 1 0\nf 1/1 2/2 2/2\n");  // nothing for Draco
+  const Outcome outcome = Sac({"encode", "m.obj", "-o", "m.sac"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.err, "sac: warning: m.obj: its texture coordinates cannot be coded, the stream has none\n");
+  Good({"verify", "m.sac"});
 }
 
 TEST_F(EncodeTest, OrderMapIsAPermutation) {
