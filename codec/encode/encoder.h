@@ -18,7 +18,7 @@ namespace sac {
 struct EncoderSettings {
   double quality = 50;                     // 0 (smallest) to 100 (nearest to the input)
   std::uint32_t harmonics = 200;           // over all components; at least one each, at most the vertices
-  std::uint32_t samples_per_harmonic = 2;  // of the reduced basis (docs/harmonics.md); 0: exact harmonics
+  std::uint32_t samples_per_harmonic = 2;  // of the reduced basis (docs/decisions.md); 0: exact harmonics
   std::uint32_t group = 128;               // frames between points of random access
   std::uint32_t pyramid = 16;              // frames of a hierarchy of B-frames; 1: P-frames only
   double level_growth = 1.2;               // of the planes' steps from level to level of a pyramid, 1..2
