@@ -15,7 +15,9 @@
 namespace sac {
 namespace {
 
-constexpr double kLoosestRigid = 30;  // steps
+// How far a rigid motion may stay from the best fit, in steps. What it leaves costs every component a constant
+// harmonic.
+constexpr double kLoosestRigid = 120, kLoosestRigidOfParts = 30;
 
 // About how many bits the residuals of a plane cost.
 double EstimatedBits(const PlaneValues& residual) {
@@ -86,7 +88,9 @@ GroupEncoder::RigidTarget GroupEncoder::FitTarget(const PositionMatrix& position
   }
   // What the rigid motion leaves, the planes' constant harmonics correct at no extra cost if they are busy anyway: so
   // it follows loosely, except where there is nothing but rigid motion.
-  target.slack = std::clamp(0.3 * fit.residual / static_cast<double>(header_.displacement_step), 0.5, kLoosestRigid);
+  const double residual = fit.residual / static_cast<double>(header_.displacement_step);
+  target.slack = shape_.components.size() == 1 ? std::clamp(residual, 0.5, kLoosestRigid)
+                                               : std::clamp(0.3 * residual, 0.5, kLoosestRigidOfParts);
   return target;
 }
 
