@@ -218,7 +218,8 @@ bool GroupEncoder::RepeatFrame(const std::vector<PositionMatrix>& frames, const 
 void GroupEncoder::Quantize(Plane plane, const Eigen::MatrixXd& target, FrameCoefficients& coefficients,
                             FrameSyntax& frame) const {
   const std::int32_t step = LevelStep(header_, plane, frame.slot.level);
-  QuantizePlane(target, units_[plane], step, coefficients.planes[plane], frame.planes[plane]);
+  QuantizePlane(target, units_[plane], step, plane == kMotion ? kMotionDeadZone : kDisplacementDeadZone,
+                coefficients.planes[plane], frame.planes[plane]);
   for (std::size_t i = 0; i < frame.planes[plane].size(); ++i) {
     coefficients.planes[plane][i] += frame.planes[plane][i] * step;
   }
