@@ -51,8 +51,8 @@ inline std::int32_t Logit(std::uint32_t p) { return kLogisticTables.logit[p >> 4
 // Two classes an octave: 0, 1, 2, 3, then 4 for 4 and 5, 5 for 6 and 7, 6 for 8 to 11 and so on.
 inline std::uint32_t HalfOctave(std::uint32_t x) {
   if (x < 4) return x;
-  const int octave = std::bit_width(x) - 1;
-  return 2 * static_cast<std::uint32_t>(octave) + ((x >> (octave - 1)) & 1);
+  const auto octave = static_cast<std::uint32_t>(std::bit_width(x)) - 1;
+  return 2 * octave + ((x >> (octave - 1)) & 1);
 }
 
 }  // namespace sac

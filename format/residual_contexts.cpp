@@ -10,7 +10,9 @@ namespace {
 
 constexpr std::size_t kRows = 1024;  // with contexts of their own
 
-std::uint32_t Magnitude(std::int32_t residual) { return std::min<std::uint32_t>(std::abs(residual), 1 << 15); }
+std::uint32_t Magnitude(std::int32_t residual) {
+  return static_cast<std::uint32_t>(std::min(std::abs(residual), 1 << 15));
+}
 
 int Sign(std::int64_t value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
