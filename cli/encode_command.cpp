@@ -131,7 +131,8 @@ void PrintText(const Json& json, const CheckedEncoding& encoding, std::FILE* fil
   if (encoding.trials() > 0) {
     const EncoderSettings& s = encoding.encoder_settings();
     std::fprintf(
-        file, "found in %u trials: --motion-step %.4g --displacement-step %.4g --detail-step %.4g --position-bits %d\n",
+        file,
+        "found in %u trials: --motion-step %.4g --displacement-step %.4g --detail-step %.4g --position-bits %.4g\n",
         encoding.trials(), *s.motion_step, *s.displacement_step, *s.detail_step, *s.position_bits);
   }
   std::fprintf(file, "%.2f seconds\n", json["seconds"].get<double>());
@@ -213,7 +214,7 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
             "quantizer step of local detail, as a fraction of the RMS radius; 0 for none [from the quality]");
   AddMaxError(app, o.settings.max_error);
   AddNumber(
-      app, "--position-bits", encoder.position_bits, 1, 24,
+      app, "--position-bits", encoder.position_bits, 1.0, 24.0,
       "log2 of the first frame's extent in steps, at edges of median length; may be a fraction [from the quality]");
   app.add_flag("--keep-order", encoder.keep_order, "put the order of the vertices in the stream");
   app.add_option("--order-map", o.settings.order_map,

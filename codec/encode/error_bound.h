@@ -30,7 +30,7 @@ struct BoundedSettings {
   double motion_step;        // radians and strain
   double displacement_step;  // model units
   double detail_step;        // model units
-  int position_bits;
+  double position_bits;
 };
 BoundedSettings SettingsOfMaxError(double max_error, const Positions& first_frame);
 

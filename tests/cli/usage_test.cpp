@@ -41,7 +41,7 @@ TEST_F(UsageTest, ErrorsOfTheCommandLine) {
                   std::string("--harmonics: '") + word + "' is not a whole number from 1 to 8192" + end);
   }
   ExpectFailure(encode({"--group", "0"}), 2, "--group: '0' is not a whole number from 1 to 4096" + end);
-  ExpectFailure(encode({"--position-bits", "25"}), 2, "--position-bits: '25' is not a whole number from 1 to 24" + end);
+  ExpectFailure(encode({"--position-bits", "25"}), 2, "--position-bits: '25' is not a number from 1 to 24" + end);
   ExpectFailure(encode({"--motion-step", "0"}), 2, "--motion-step: '0' is not a number from 1e-09 to 1e+09" + end);
   ExpectFailure(encode({"--displacement-step", "inf"}), 2,
                 "--displacement-step: 'inf' is not a number from 1e-09 to 1e+09" + end);

@@ -53,6 +53,9 @@ double TypicalQuality(double Typical::*figure, double target) {
 
 double LogRatio(double figure, double target) { return std::log(std::max(figure, 1e-12) / target); }
 
+// Whole bits are near enough to the best: what they leave, the other steps make up for.
+int WholeBits(double quality) { return static_cast<int>(std::lround(SettingsOfQuality(quality).position_bits)); }
+
 class Search {
  public:
   Search(const RateTargets& targets, const EncoderSettings& base, const std::function<Status(Trial&)>& run)
@@ -122,7 +125,7 @@ Status Search::AlongQualities(int bits, int most_trials, double& quality) {
   const double slope = BoundsDistortion() ? kQualitySlope : kSizeSlope;
   const auto evaluate = [&](double q, double& y) {
     Trial trial;
-    const int b = bits != 0 ? bits : std::clamp(SettingsOfQuality(q).position_bits, kLeastBits, kMostBits);
+    const int b = bits != 0 ? bits : std::clamp(WholeBits(q), kLeastBits, kMostBits);
     SAC_RETURN_IF_ERROR(Evaluate(q, 0, b, trial));
     y = Excess(trial);
     return Status::Ok();
@@ -156,7 +159,7 @@ Status Search::Run(Trial& best) {
   if (targets_.sted) quality_ = std::max(quality_, TypicalQuality(&Typical::sted, *targets_.sted));
   if (!BoundsDistortion()) quality_ = TypicalQuality(&Typical::bpvf, *targets_.bpvf);
   SAC_RETURN_IF_ERROR(AlongQualities(0, kFirstTrials, quality_));
-  const int start = std::clamp(SettingsOfQuality(quality_).position_bits, kLeastBits + 1, kMostBits - 1);
+  const int start = std::clamp(WholeBits(quality_), kLeastBits + 1, kMostBits - 1);
   double score = 0, other = 0;
   SAC_RETURN_IF_ERROR(AtBits(start, score));
   const double quality = quality_, log_motion = log_motion_;
