@@ -8,15 +8,15 @@ namespace {
 
 // docs/quality.md has the figures these rows give. Detail sets in where the smooth planes buy nothing more.
 constexpr std::array<QualitySettings, 9> kTable = {{
-    {0, 0.15, 0.008, 0, 8},
-    {10, 0.08, 0.004, 0, 9},
-    {25, 0.05, 0.0022, 0, 10},
-    {50, 0.03, 0.0012, 0, 11},
-    {60, 0.02, 0.0006, 0, 12},
-    {70, 0.02, 0.0005, 0.01, 12},
+    {0, 0.15, 0.008, 0, 7.4},
+    {10, 0.08, 0.004, 0, 8.4},
+    {25, 0.05, 0.0022, 0, 9.3},
+    {50, 0.03, 0.0012, 0, 10.3},
+    {60, 0.02, 0.0006, 0, 11.3},
+    {70, 0.02, 0.0005, 0.01, 11.6},
     {80, 0.02, 0.0005, 0.005, 12},
-    {90, 0.02, 0.0005, 0.002, 13},
-    {100, 0.015, 0.0004, 0.0004, 15},
+    {90, 0.02, 0.0005, 0.002, 12.6},
+    {100, 0.015, 0.0004, 0.0004, 14.4},
 }};
 
 // Before this part of the way from none to some, detail steps are so coarse that nothing would be coded.

@@ -195,7 +195,8 @@ Status Search::WithoutDetail() {
 Status Search::Choose(Trial& best) const {
   const Trial* smallest = nullptr;
   const Trial* tightest = nullptr;  // close to all targets
-  for (const auto& [place, trial] : trials_) {
+  for (const auto& entry : trials_) {
+    const Trial& trial = entry.second;
     if (Excess(trial) > 0) continue;
     // The best that is close to a target; if none is, the best.
     const auto better = [&](const Trial* than) {

@@ -1,0 +1,69 @@
+#include "codec/encode/position_grid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+
+namespace sac {
+namespace {
+
+// The grid is finer than what is coded, so that steps can follow the edges' lengths closely.
+constexpr int kGridBits = 5;
+// The part of a step that grows with the edges; the other is the same everywhere.
+constexpr double kStepByEdges = 0.8;
+constexpr double kLongestStep = 0.5;  // of an edge
+
+// The median length of edges; 0 without any.
+double MedianEdge(const std::vector<std::array<double, 3>>& cells, const std::vector<Triangle>& triangles) {
+  std::vector<double> lengths;
+  for (const Triangle& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto &a = cells[t[k]], &b = cells[t[(k + 1) % 3]];
+      lengths.push_back(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
+    }
+  }
+  if (lengths.empty()) return 0;
+  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
+  std::nth_element(lengths.begin(), middle, lengths.end());
+  return *middle;
+}
+
+}  // namespace
+
+Status ChooseGrid(const Mesh& mesh, double bits, bool by_edges, SequenceHeader& header, PositionTargets& targets) {
+  std::array<double, 3> low, high;
+  low.fill(std::numeric_limits<double>::max());
+  high.fill(std::numeric_limits<double>::lowest());
+  for (const Vec3f& p : mesh.positions) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[a] = std::min(low[a], static_cast<double>(p[a]));
+      high[a] = std::max(high[a], static_cast<double>(p[a]));
+    }
+  }
+  const double extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  if (extent > 1e37) return Status::InvalidArgument("the coordinates span more than 1e37");
+  header.position_bits = static_cast<std::uint8_t>(std::min(std::ceil(bits) + kGridBits, 24.0));
+  const double last = std::ldexp(1.0, header.position_bits) - 1;
+  header.cell = std::max(static_cast<float>(extent / last), 1e-35f);
+  header.origin_x = static_cast<float>(low[0]);
+  header.origin_y = static_cast<float>(low[1]);
+  header.origin_z = static_cast<float>(low[2]);
+  for (const Vec3f& p : mesh.positions) {
+    std::array<double, 3>& cells = targets.cells.emplace_back();
+    for (std::size_t a = 0; a < 3; ++a) {
+      cells[a] = std::clamp((static_cast<double>(p[a]) - low[a]) / static_cast<double>(header.cell), 0.0, last);
+    }
+  }
+  const double step = std::ldexp(1.0, header.position_bits) / std::exp2(bits);
+  const double edge = by_edges ? MedianEdge(targets.cells, mesh.triangles) : 0;
+  // Steps as long as the edges have nothing to follow.
+  const bool follows = edge > 0 && kStepByEdges * step / edge < kLongestStep;
+  const double share = follows ? kStepByEdges : 0;
+  targets.steps.base = static_cast<std::uint32_t>(std::lround(std::max(16 * (1 - share) * step, 1.0)));
+  targets.steps.slope = follows ? static_cast<std::uint32_t>(std::lround(4096 * share * step / edge)) : 0;
+  return Status::Ok();
+}
+
+}  // namespace sac
