@@ -20,12 +20,15 @@
 #include "codec/components.h"
 #include "codec/decode/decoder.h"
 #include "codec/deformation.h"
+#include "codec/encode/position_search.h"
 #include "codec/harmonics.h"
 #include "codec/laplacian.h"
 #include "codec/patches.h"
+#include "codec/position_coder.h"
 #include "codec/radial_functions.h"
 #include "conformance/spec_examples.h"
 #include "conformance/text_decoder.h"
+#include "conformance/text_positions.h"
 #include "format/bytes.h"
 #include "format/crc32.h"
 #include "format/frame_coder.h"
@@ -539,6 +542,44 @@ TEST(Spec, TextReadsOpenGroups) {
   EXPECT_TRUE(decoder.Finish().ok());
   EXPECT_EQ(count, 18u);
   EXPECT_EQ(frames.size(), 18u);
+}
+
+// Section 5.5: a rough sheet with holes, a hub, repeated, degenerate and stray triangles, and loose ends.
+TEST(Spec, TextReadsPositions) {
+  const std::uint32_t side = 13;
+  std::mt19937 random(4);
+  std::vector<Triangle> triangles;
+  std::vector<std::array<double, 3>> cells;
+  for (std::uint32_t v = 0; v < side * side; ++v) {
+    const double x = v % side, y = v / side;
+    const auto noise = [&] { return static_cast<double>(random() % 1000) / 40; };
+    cells.push_back(
+        {100 + 90 * x + noise(), 100 + 60 * y * (1 + x / 20) + noise(), 400 + 200 * std::sin(x / 3) + noise()});
+    if (v % side + 1 == side || v / side + 1 == side || random() % 12 == 0) continue;
+    triangles.push_back({v, v + 1, v + side});
+    triangles.push_back({v + 1, v + side + 1, v + side});
+  }
+  const auto hub = static_cast<std::uint32_t>(cells.size());
+  cells.push_back({600, 600, 1000});
+  for (std::uint32_t v = 0; v < 40; ++v) triangles.push_back({hub, v, v + 1});
+  for (int i = 0; i < 8; ++i) cells.push_back({30.0 * i, 10.0 * i, 7.0});
+  triangles.insert(triangles.end(),
+                   {{hub + 1, hub + 2, hub + 3}, {hub + 4, hub + 4, hub + 5}, {0, 80, 160}, {1, 2, 20}});
+  triangles.insert(triangles.end(), triangles.begin(), triangles.begin() + 20);
+  const auto vertices = static_cast<std::uint32_t>(cells.size());
+  for (const PositionSteps steps : {PositionSteps{16, 0}, {200, 0}, {20, 900}}) {
+    const PositionGraph graph(vertices, triangles);
+    const Bytes bytes = EncodePositions(cells, graph, steps, 11);
+    std::vector<GridPosition> wanted;
+    ASSERT_TRUE(DecodePositions(bytes, graph, steps, 11, wanted).ok());
+    TextDecoder in(bytes);
+    const auto read = TextPositions(vertices, triangles, steps.base, steps.slope, 11).Read(in);
+    EXPECT_TRUE(in.AtEnd());
+    ASSERT_EQ(read.size(), wanted.size());
+    for (std::uint32_t v = 0; v < vertices; ++v) {
+      for (std::size_t a = 0; a < 3; ++a) ASSERT_EQ(read[v][a], wanted[v][a]) << v << " " << a;
+    }
+  }
 }
 
 TEST(Spec, DecoderReadsTheWholeStream) {
