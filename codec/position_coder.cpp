@@ -56,19 +56,14 @@ bool PositionCoder<Coder>::Code(Coder& coder, const PositionPredictor& predictor
       const std::int64_t lean = p.relaxed[axis] - 16 * expected;
       bool negative = residual[j] < 0;
       coder.Bit(signs_[2 * Class(std::abs(lean), p.step) + (lean < 0 ? 1 : 0)], negative);
-      std::uint32_t magnitude = Coder::kDecodes ? 1 : static_cast<std::uint32_t>(std::abs(residual[j]));
-      std::size_t bin = 1;
-      for (; bin <= kUnary; ++bin) {
-        bool more = magnitude > bin;
-        CodeBin(coder, contexts, j, bin, more);
-        if (!more) break;
-        if constexpr (Coder::kDecodes) ++magnitude;
-      }
-      if (bin > kUnary) {
-        std::uint32_t rest = magnitude - static_cast<std::uint32_t>(bin);
+      const auto wanted = static_cast<std::uint32_t>(std::abs(residual[j]));
+      std::uint32_t magnitude = CodeUnary<Coder>(
+          wanted, kUnary, [&](std::size_t bin, bool& more) { CodeBin(coder, contexts, j, bin, more); });
+      if (magnitude > kUnary) {
+        std::uint32_t rest = wanted - magnitude;  // of no meaning to a decoder, which reads it
         CodeUnsigned(coder, rest_, rest);
         if (rest >> bits != 0) return false;
-        magnitude = rest + static_cast<std::uint32_t>(bin);
+        magnitude += rest;
       }
       steps = negative ? -static_cast<std::int64_t>(magnitude) : magnitude;
     }

@@ -56,6 +56,7 @@ PositionPredictor::PositionPredictor(const PositionGraph& graph, const PositionS
       misses_(graph.vertices(), 0),
       last_cell_((std::int64_t{1} << bits) - 1) {
   last_.fill(std::int64_t{16} << (bits - 1));
+  weights_.fill({1 << 15, 0, 0});
 }
 
 // spec.md 5.5.3: across each edge whose triangle has the vertex lies another, known one.
@@ -210,13 +211,12 @@ void PositionPredictor::Predict(std::uint32_t vertex) {
     AverageNeighbors();
     AddParallelograms();
     now_.relaxed = Relax();
-    const Weights& w =
-        weights_[8 * std::min<std::size_t>(now_.parallelograms, 4) + std::min<std::size_t>(now_.neighbours, 7)];
+    weights_now_ =
+        &weights_[8 * std::min<std::size_t>(now_.parallelograms, 4) + std::min<std::size_t>(now_.neighbours, 7)];
     for (std::size_t a = 0; a < 3; ++a) {
-      const std::int64_t sum = w.of[0] * Bounded(now_.relaxed[a] - parallelogram_[a]) +
-                               w.of[1] * Bounded(mean_[a] - parallelogram_[a]) +
-                               w.of[2] * Bounded(wide_mean_[a] - parallelogram_[a]);
-      now_.centre[a] = parallelogram_[a] + (sum >> 16);
+      features_[a] = {Bounded(now_.relaxed[a] - parallelogram_[a]), Bounded(mean_[a] - parallelogram_[a]),
+                      Bounded(wide_mean_[a] - parallelogram_[a])};
+      now_.centre[a] = parallelogram_[a] + (Dot(*weights_now_, features_[a]) >> 16);
     }
     std::stable_sort(now_.axes.begin(), now_.axes.end(),
                      [&](std::size_t a, std::size_t b) { return std::abs(normal_[a]) < std::abs(normal_[b]); });
@@ -256,15 +256,13 @@ void PositionPredictor::Learn(const GridPosition& position) {
     tangent_weight_ += error * f * 655 / (unit * unit + f * f);
     tangent_weight_ = std::clamp<std::int64_t>(tangent_weight_, -(1 << 17), 1 << 17);
   }
-  Weights& w = weights_[8 * std::min<std::size_t>(now_.parallelograms, 4) + std::min<std::size_t>(now_.neighbours, 7)];
+  Vector& w = *weights_now_;
   for (std::size_t a = 0; a < 3; ++a) {
-    const Vector f = {Bounded(now_.relaxed[a] - parallelogram_[a]), Bounded(mean_[a] - parallelogram_[a]),
-                      Bounded(wide_mean_[a] - parallelogram_[a])};
-    const std::int64_t sum = w.of[0] * f[0] + w.of[1] * f[1] + w.of[2] * f[2];
-    const std::int64_t error = Bounded(positions_[v][a] - parallelogram_[a] - (sum >> 16));
+    const Vector& f = features_[a];
+    const std::int64_t error = Bounded(positions_[v][a] - parallelogram_[a] - (Dot(w, f) >> 16));
     const std::int64_t norm = unit * unit + Dot(f, f);
     for (std::size_t k = 0; k < 3; ++k) {
-      w.of[k] = std::clamp<std::int64_t>(w.of[k] + error * f[k] * 655 / norm, -(1 << 18), 1 << 18);
+      w[k] = std::clamp<std::int64_t>(w[k] + error * f[k] * 655 / norm, -(1 << 18), 1 << 18);
     }
   }
 }

@@ -49,10 +49,6 @@ class PositionPredictor {
   void Learn(const GridPosition& position);
 
  private:
-  struct Weights {
-    std::array<std::int64_t, 3> of = {1 << 15, 0, 0};  // 1/65536
-  };
-
   static constexpr std::size_t kMostGuesses = 24;
   struct Equation {
     Vector constant = {};
@@ -79,8 +75,8 @@ class PositionPredictor {
   std::vector<bool> known_;
   std::vector<Slot> slot_;
   std::vector<std::int64_t> misses_;
-  std::int64_t last_cell_;  // of the grid
-  std::array<Weights, 40> weights_;
+  std::int64_t last_cell_;                 // of the grid
+  std::array<Vector, 40> weights_;         // by class of vertices, 1/65536
   std::int64_t tangent_weight_ = 1 << 15;  // 1/65536
   std::int64_t length_ = 0;                // of the edges near the last vertex
   Vector last_;
@@ -88,7 +84,9 @@ class PositionPredictor {
   Prediction now_;
   std::vector<std::uint32_t> known_neighbors_, unknown_;
   Vector parallelogram_, mean_, wide_mean_;
-  Vector normal_;  // 1/1024
+  Vector* weights_now_ = nullptr;
+  std::array<Vector, 3> features_;  // by axis, what the weights weigh
+  Vector normal_;                   // 1/1024
 };
 
 }  // namespace sac

@@ -31,6 +31,18 @@ void CodeUnsigned(Coder& coder, UnsignedModels& models, std::uint32_t& value) {
   if constexpr (Coder::kDecodes) value = ((1u << width) | low) - 1;
 }
 
+// A magnitude of 1 or more in unary (spec.md 7.4): `code_bin(n, more)` codes whether it is above n, for n from 1 to
+// `bins`. Returns the magnitude, or bins + 1 for all that are above.
+template <class Coder, class CodeBin>
+std::uint32_t CodeUnary(std::uint32_t magnitude, std::uint32_t bins, CodeBin&& code_bin) {
+  for (std::uint32_t n = 1; n <= bins; ++n) {
+    bool more = !Coder::kDecodes && magnitude > n;
+    code_bin(n, more);
+    if (!more) return n;
+  }
+  return bins + 1;
+}
+
 // A signed integer of magnitude below 2^31: a zero flag, the sign as it is, the magnitude minus one.
 struct SignedModels {
   BitModel nonzero;

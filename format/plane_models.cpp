@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "format/frame_syntax.h"
+#include "format/integer_coder.h"
 
 namespace sac {
 namespace {
@@ -85,16 +86,13 @@ bool PlaneModels::Code(Coder& coder, const ResidualContext& context, std::int32_
   }
   bool negative = value < 0;
   CodeSign(coder, context, negative);
-  std::int32_t magnitude = Coder::kDecodes ? 1 : std::abs(value);
-  std::size_t step = 0;
-  for (; step < kUnary; ++step) {
-    bool more = magnitude > static_cast<std::int32_t>(step) + 1;
-    CodeBin(coder, context, step + 1, more);
-    if (!more) break;
-    if constexpr (Coder::kDecodes) ++magnitude;
-  }
-  if (step == kUnary) {  // Exp-Golomb of what is over 15
-    std::uint32_t rest = static_cast<std::uint32_t>(magnitude) - 15 + 1;
+  auto magnitude = static_cast<std::uint32_t>(std::abs(value));  // of no meaning yet to a decoder
+  const std::uint32_t unary =
+      CodeUnary<Coder>(magnitude, kUnary, [&](std::size_t bin, bool& more) { CodeBin(coder, context, bin, more); });
+  if (unary <= kUnary) {
+    magnitude = unary;
+  } else {  // Exp-Golomb of what is over 15
+    std::uint32_t rest = magnitude - 15 + 1;
     std::size_t width = 0;
     if constexpr (!Coder::kDecodes) {
       while ((rest >> (width + 1)) != 0) ++width;
@@ -107,9 +105,9 @@ bool PlaneModels::Code(Coder& coder, const ResidualContext& context, std::int32_
     }
     std::uint32_t low = rest & ((1u << width) - 1);
     coder.Raw(low, static_cast<int>(width));
-    if constexpr (Coder::kDecodes) magnitude = static_cast<std::int32_t>(((1u << width) | low) - 1 + 15);
+    if constexpr (Coder::kDecodes) magnitude = ((1u << width) | low) - 1 + 15;
   }
-  value = negative ? -magnitude : magnitude;
+  value = negative ? -static_cast<std::int32_t>(magnitude) : static_cast<std::int32_t>(magnitude);
   return magnitude <= kMaxResidual;
 }
 

@@ -6,11 +6,10 @@
 #include "format/bytes.h"
 #include "format/packet.h"
 #include "tests/test_clips.h"
+#include "tests/test_packets.h"
 
 namespace sac {
 namespace {
-
-using Bytes = std::vector<std::uint8_t>;
 
 EncoderSettings LowDelay() {
   EncoderSettings settings;
@@ -18,12 +17,6 @@ EncoderSettings LowDelay() {
   settings.group = 5;
   settings.low_delay = true;
   return settings;
-}
-
-Bytes Concatenated(const std::vector<Bytes>& parts) {
-  Bytes all;
-  for (const Bytes& part : parts) all.insert(all.end(), part.begin(), part.end());
-  return all;
 }
 
 // The start, what each Send() gives, the end.
@@ -133,31 +126,6 @@ TEST(LowDelay, ChunksMakeNoDifference) {
     ASSERT_EQ(decoded.frames.size(), 7u);
     for (std::size_t t = 0; t < 7; ++t) EXPECT_EQ(decoded.frames[t].positions, whole.frames[t].positions);
   }
-}
-
-std::vector<Packet> Packets(const Bytes& stream) {
-  std::vector<Packet> packets;
-  PacketReader reader{Limits{}};
-  std::optional<Packet> packet;
-  for (std::span<const std::uint8_t> rest(stream); !rest.empty();) {
-    EXPECT_TRUE(reader.Read(rest, packet).ok());
-    if (packet) packets.push_back(*packet);
-  }
-  return packets;
-}
-
-// With all checks right; open groups may be anywhere.
-Bytes Join(const std::vector<Packet>& packets) {
-  std::vector<Bytes> parts{Bytes(std::begin(kMagic), std::end(kMagic))};
-  RecordWriter records;
-  for (const Packet& p : packets) {
-    const bool opens = p.type == PacketType::kGroup && p.payload == Bytes{kOpenGroup};
-    parts.push_back(opens                             ? records.Open()
-                    : p.type == PacketType::kFrame    ? records.Frame(p.payload)
-                    : p.type == PacketType::kGroupEnd ? records.End()
-                                                      : WritePacket(p.type, p.payload));
-  }
-  return Concatenated(parts);
 }
 
 TEST(LowDelay, DecodingBeginsAtAnyGroup) {

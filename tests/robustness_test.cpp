@@ -5,11 +5,10 @@
 #include "format/bytes.h"
 #include "format/packet.h"
 #include "tests/test_clips.h"
+#include "tests/test_packets.h"
 
 namespace sac {
 namespace {
-
-using Bytes = std::vector<std::uint8_t>;
 
 // Small streams that between them use every part of the format.
 std::vector<Bytes> Streams() {
@@ -41,27 +40,6 @@ std::vector<Bytes> Streams() {
   }
   return {Encode(bending, plain).bytes, Encode(bending, previous).bytes, Encode(parts, ordered).bytes,
           Encode(bending, fine).bytes};
-}
-
-std::vector<Packet> Packets(const Bytes& stream) {
-  std::vector<Packet> packets;
-  PacketReader reader{Limits{}};
-  std::optional<Packet> packet;
-  for (std::span<const std::uint8_t> rest(stream); !rest.empty();) {
-    EXPECT_TRUE(reader.Read(rest, packet).ok());
-    if (packet) packets.push_back(*packet);
-  }
-  return packets;
-}
-
-// The stream of `packets`, all checksums right.
-Bytes Join(const std::vector<Packet>& packets) {
-  Bytes stream(std::begin(kMagic), std::end(kMagic));
-  for (const Packet& p : packets) {
-    const Bytes bytes = WritePacket(p.type, p.payload);
-    stream.insert(stream.end(), bytes.begin(), bytes.end());
-  }
-  return stream;
 }
 
 // What a mutated stream may spend.

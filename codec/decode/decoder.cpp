@@ -49,7 +49,7 @@ class Decoder::Impl {
   Status TakeEnd(std::span<const std::uint8_t> payload);
   // Whether a group of so many frames is within the limits.
   Status CheckGroupSize(std::uint32_t frames) const;
-  // Parses the frame of `slot`; `is_last` one of the range code.
+  // Parses the frame of `slot`; `intra`: whether it is predicted from none.
   Status ParseFrame(const FrameSlot& slot, RangeDecoder& range, FrameCoder<RangeDecoder>& coder, bool& intra) const;
   Status DecodeFrame(DecodedFrame& frame);
   Status Latch(Status status) {

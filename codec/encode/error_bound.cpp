@@ -1,8 +1,11 @@
 #include "codec/encode/error_bound.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+
+#include "codec/encode/bounding_box.h"
 
 namespace sac {
 namespace {
@@ -32,16 +35,8 @@ double LargestCoordinate(const Positions& positions) {
 }
 
 double BoxDiagonal(const Positions& positions) {
-  double squares = 0;
-  for (std::size_t a = 0; a < 3 && !positions.empty(); ++a) {
-    double low = static_cast<double>(positions[0][a]), high = low;
-    for (const Vec3f& p : positions) {
-      low = std::min(low, static_cast<double>(p[a]));
-      high = std::max(high, static_cast<double>(p[a]));
-    }
-    squares += (high - low) * (high - low);
-  }
-  return std::sqrt(squares);
+  const std::array<double, 3> size = BoundingBox(positions).size();
+  return std::sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
 }
 
 double LeastMaxError(const Positions& first_frame) {

@@ -4,7 +4,8 @@
 #include <array>
 #include <cmath>
 #include <cstdint>
-#include <limits>
+
+#include "codec/encode/bounding_box.h"
 
 namespace sac {
 namespace {
@@ -33,16 +34,9 @@ double MedianEdge(const std::vector<std::array<double, 3>>& cells, const std::ve
 }  // namespace
 
 Status ChooseGrid(const Mesh& mesh, double bits, bool by_edges, SequenceHeader& header, PositionTargets& targets) {
-  std::array<double, 3> low, high;
-  low.fill(std::numeric_limits<double>::max());
-  high.fill(std::numeric_limits<double>::lowest());
-  for (const Vec3f& p : mesh.positions) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], static_cast<double>(p[a]));
-      high[a] = std::max(high[a], static_cast<double>(p[a]));
-    }
-  }
-  const double extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2]});
+  const Box box = BoundingBox(mesh.positions);
+  const std::array<double, 3>&low = box.low, size = box.size();
+  const double extent = std::max({size[0], size[1], size[2]});
   if (extent > 1e37) return Status::InvalidArgument("the coordinates span more than 1e37");
   header.position_bits = static_cast<std::uint8_t>(std::min(std::ceil(bits) + kGridBits, 24.0));
   const double last = std::ldexp(1.0, header.position_bits) - 1;
@@ -56,7 +50,7 @@ Status ChooseGrid(const Mesh& mesh, double bits, bool by_edges, SequenceHeader& 
       cells[a] = std::clamp((static_cast<double>(p[a]) - low[a]) / static_cast<double>(header.cell), 0.0, last);
     }
   }
-  const double step = std::ldexp(1.0, header.position_bits) / std::exp2(bits);
+  const double step = std::exp2(header.position_bits - bits);
   const double edge = by_edges ? MedianEdge(targets.cells, mesh.triangles) : 0;
   // Steps as long as the edges have nothing to follow.
   const bool follows = edge > 0 && kStepByEdges * step / edge < kLongestStep;

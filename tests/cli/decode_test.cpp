@@ -155,7 +155,7 @@ TEST_F(DecodeTest, Ranges) {
 TEST_F(DecodeTest, IntoAPipe) {
   Encode("clip.sac");
   Good({"decode", "clip.sac", "-o", "part.mdd", "--frames", "2:5"});
-  const Outcome outcome = Shell("mkfifo pipe.mdd; cat pipe.mdd > got.mdd & " + Quote(SAC_EXECUTABLE) +
+  const Outcome outcome = Shell("mkfifo pipe.mdd; timeout 60 cat pipe.mdd > got.mdd & " + Quote(SAC_EXECUTABLE) +
                                 " decode clip.sac -o pipe.mdd --frames 2:5; echo $?; wait");
   EXPECT_EQ(outcome.out, "0\n");
   EXPECT_EQ(Read("got.mdd"), Read("part.mdd"));

@@ -1,0 +1,20 @@
+#include "codec/encode/bounding_box.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace sac {
+
+Box BoundingBox(const Positions& positions) {
+  Box box;
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto x = static_cast<double>(positions[v][a]);
+      box.low[a] = v == 0 ? x : std::min(box.low[a], x);
+      box.high[a] = v == 0 ? x : std::max(box.high[a], x);
+    }
+  }
+  return box;
+}
+
+}  // namespace sac

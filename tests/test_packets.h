@@ -1,0 +1,48 @@
+#pragma once
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <iterator>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "format/packet.h"
+
+namespace sac {
+
+using Bytes = std::vector<std::uint8_t>;
+
+inline Bytes Concatenated(const std::vector<Bytes>& parts) {
+  Bytes all;
+  for (const Bytes& part : parts) all.insert(all.end(), part.begin(), part.end());
+  return all;
+}
+
+inline std::vector<Packet> Packets(const Bytes& stream) {
+  std::vector<Packet> packets;
+  PacketReader reader{Limits{}};
+  std::optional<Packet> packet;
+  for (std::span<const std::uint8_t> rest(stream); !rest.empty();) {
+    EXPECT_TRUE(reader.Read(rest, packet).ok());
+    if (packet) packets.push_back(*packet);
+  }
+  return packets;
+}
+
+// The stream of `packets`, all checks right; open groups may be anywhere.
+inline Bytes Join(const std::vector<Packet>& packets) {
+  std::vector<Bytes> parts{Bytes(std::begin(kMagic), std::end(kMagic))};
+  RecordWriter records;
+  for (const Packet& p : packets) {
+    const bool opens = p.type == PacketType::kGroup && p.payload == Bytes{kOpenGroup};
+    parts.push_back(opens                             ? records.Open()
+                    : p.type == PacketType::kFrame    ? records.Frame(p.payload)
+                    : p.type == PacketType::kGroupEnd ? records.End()
+                                                      : WritePacket(p.type, p.payload));
+  }
+  return Concatenated(parts);
+}
+
+}  // namespace sac
