@@ -1,11 +1,14 @@
+#include <algorithm>
 #include <charconv>
 #include <cstdint>
+#include <cstdio>
 #include <filesystem>
 #include <limits>
 #include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
+#include <utility>
 
 #include "cli/clip_output.h"
 #include "cli/commands.h"
@@ -20,14 +23,15 @@ namespace {
 
 constexpr double kFpsOfUnknown = 24;
 
-struct FrameRange {
+struct WantedFrames {
   std::uint32_t begin = 0;
   std::optional<std::uint32_t> end;  // all to the last if not given
 };
 
 struct DecodeOptions {
   std::string input, output, order_map;
-  FrameRange frames;
+  WantedFrames frames;
+  bool skip_damage = false;
 };
 
 bool ParseFrameNumber(std::string_view text, std::uint32_t& number) {
@@ -36,7 +40,7 @@ bool ParseFrameNumber(std::string_view text, std::uint32_t& number) {
 }
 
 // `A:B`, `A:`, `:B` or `A`.
-bool ParseFrameRange(std::string_view text, FrameRange& range) {
+bool ParseFrameRange(std::string_view text, WantedFrames& range) {
   range = {};
   const std::size_t colon = text.find(':');
   if (colon == std::string_view::npos) {
@@ -70,10 +74,15 @@ class Decoding {
 
  private:
   Status OpenOutput(const Decoder& decoder);
+  // Frames before `index` that are lost get the positions of the one before, or of the next where none is.
+  Status FillUpTo(std::uint32_t index, const Positions& next);
+  Status Write(std::uint32_t index, const Positions& positions);
 
   const DecodeOptions& options_;
   VertexOrder order_;  // empty: as decoded
   std::unique_ptr<ClipOutput> output_;
+  std::uint32_t written_ = 0;  // the frame after the last one written
+  Positions last_;             // with skip_damage
 };
 
 // Needs the decoded mesh.
@@ -92,6 +101,18 @@ Status Decoding::OpenOutput(const Decoder& decoder) {
   return ClipOutput::Open(options_.output, order_.empty() ? mesh : ToInputOrder(mesh, order_), settings, output_);
 }
 
+Status Decoding::Write(std::uint32_t index, const Positions& positions) {
+  written_ = index + 1;
+  return output_->Write(index, order_.empty() ? positions : ToInputOrder(positions, order_));
+}
+
+Status Decoding::FillUpTo(std::uint32_t index, const Positions& next) {
+  for (std::uint32_t lost = std::max(written_, options_.frames.begin); lost < index; ++lost) {
+    SAC_RETURN_IF_ERROR(Write(lost, last_.empty() ? next : last_));
+  }
+  return Status::Ok();
+}
+
 Status Decoding::Run() {
   const std::filesystem::path directory = std::filesystem::path(options_.output).parent_path();
   if (std::error_code error; !directory.empty() && !std::filesystem::is_directory(directory, error)) {
@@ -101,10 +122,13 @@ Status Decoding::Run() {
   SAC_RETURN_IF_ERROR(input.Open(options_.input));
   Progress progress(options_.frames.end);
   progress.Begin("harmonics");
-  DecodedFrames frames(input.name(), [&input](auto& chunk) { return input.Read(chunk); });
+  DecoderSettings settings;
+  settings.skip_damage = options_.skip_damage;
+  DecodedFrames frames(
+      input.name(), [&input](auto& chunk) { return input.Read(chunk); }, settings);
   DecodedFrame frame;
   std::uint32_t count = 0;
-  const FrameRange& range = options_.frames;
+  const WantedFrames& range = options_.frames;
   // What comes after the last frame wanted is not read.
   for (bool end = false; count != range.end;) {
     SAC_RETURN_IF_ERROR(frames.Next(frame, end));
@@ -113,8 +137,18 @@ Status Decoding::Run() {
     progress.FramesDone(count);
     if (frame.index < range.begin) continue;
     if (!output_) SAC_RETURN_IF_ERROR(OpenOutput(frames.decoder()));
-    SAC_RETURN_IF_ERROR(
-        output_->Write(frame.index, order_.empty() ? frame.positions : ToInputOrder(frame.positions, order_)));
+    SAC_RETURN_IF_ERROR(FillUpTo(std::min(frame.index, range.end.value_or(frame.index)), frame.positions));
+    if (frame.index < range.end.value_or(count)) SAC_RETURN_IF_ERROR(Write(frame.index, frame.positions));
+    if (range.end && count > *range.end) count = *range.end;
+    if (options_.skip_damage) last_ = std::move(frame.positions);
+  }
+  for (const FrameRange& lost : frames.decoder().lost_frames()) {
+    std::fprintf(stderr, "sac: %s: frames %u to %u are lost; the frame before stands for them\n", input.name().c_str(),
+                 lost.first, lost.first + lost.count - 1);
+    if (const std::uint64_t after = std::uint64_t{lost.first} + lost.count; output_ && after > count) {
+      count = static_cast<std::uint32_t>(std::min<std::uint64_t>(after, range.end.value_or(0xffffffffu)));
+      SAC_RETURN_IF_ERROR(FillUpTo(count, last_));
+    }
   }
   if (count == 0) return Status::InvalidArgument(input.name() + ": has no frames");
   if (!output_ || (range.end && count != *range.end)) {
@@ -152,6 +186,8 @@ Command AddDecodeCommand(CLI::App& app) {
       ->add_option("--order-map", options->order_map,
                    "order the vertices by the map that encode --order-map wrote (instead of the stream's own order)")
       ->option_text("FILE");
+  command->add_flag("--skip-damage", options->skip_damage,
+                    "go on after damage with the next group that is sound, and tell which frames are lost");
   command->footer(
       "The vertices come in the order of the encoder's input if the stream keeps it or a map gives it. An MDD has\n"
       "times; where the stream has no frame rate they are those of 24 frames a second. Files get their names when all\n"

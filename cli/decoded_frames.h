@@ -18,9 +18,14 @@ class DecodedFrames {
   using NextChunk = std::function<Status(std::span<const std::uint8_t>& chunk)>;
 
   // `name` of the stream begins the messages about it; those of `next_chunk` come as they are.
-  DecodedFrames(std::string name, NextChunk next_chunk) : name_(std::move(name)), next_chunk_(std::move(next_chunk)) {}
+  DecodedFrames(std::string name, NextChunk next_chunk, const DecoderSettings& settings = {})
+      : name_(std::move(name)),
+        next_chunk_(std::move(next_chunk)),
+        skip_damage_(settings.skip_damage),
+        decoder_(settings) {}
 
-  // `end` is set, and `frame` left alone, after the last frame of a complete stream.
+  // `end` is set, and `frame` left alone, after the last frame of a complete stream; with skip_damage of any that has
+  // frames.
   Status Next(DecodedFrame& frame, bool& end);
 
   const Decoder& decoder() const { return decoder_; }
@@ -32,7 +37,9 @@ class DecodedFrames {
 
   std::string name_;
   NextChunk next_chunk_;
+  bool skip_damage_;
   Decoder decoder_;
+  bool ended_ = false;
   std::span<const std::uint8_t> chunk_;
   std::uint64_t bytes_ = 0;
 };

@@ -216,6 +216,9 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
   AddNumber(
       app, "--position-bits", encoder.position_bits, 1.0, 24.0,
       "log2 of the first frame's extent in steps, at edges of median length; may be a fraction [from the quality]");
+  app.add_flag("!--no-index", encoder.index, "leave out where groups begin, which a stream of several ends with");
+  AddNumber(app, "--repeat-start", encoder.repeat_start, 0u, 0xffffffffu,
+            "header and first frame again before every so many groups, for those who join in the middle [never]");
   app.add_flag("--keep-order", encoder.keep_order, "put the order of the vertices in the stream");
   app.add_option("--order-map", o.settings.order_map,
                  "write the order of the vertices to a file, for decode --order-map")

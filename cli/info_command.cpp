@@ -66,6 +66,7 @@ void PrintText(const std::string& name, const StreamSummary& summary) {
   }
   std::printf("%-24s %llu\n", "frames", static_cast<unsigned long long>(summary.frames));
   std::printf("%-24s %zu\n", "groups", GroupCount(summary));
+  std::printf("%-24s %s\n", "index", summary.has_index ? "yes" : "no");
   if (const auto seconds = Duration(summary)) std::printf("%-24s %.6g seconds\n", "duration", *seconds);
   for (const PacketSummary& packet : summary.packets) {
     std::printf("packet %-8s %10llu bytes", NameOf(packet.type), static_cast<unsigned long long>(packet.bytes));
@@ -98,6 +99,7 @@ Json ToJson(const StreamSummary& summary, const Status& status) {
   }
   json["frames"] = summary.frames;
   json["groups"] = GroupCount(summary);
+  json["index"] = summary.has_index;
   const auto seconds = Duration(summary);
   json["duration"] = seconds ? Json(*seconds) : Json();
   json["packets"] = Json::array();

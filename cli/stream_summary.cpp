@@ -3,9 +3,10 @@
 #include <span>
 
 #include "codec/decode/draco_mesh.h"
-#include "format/bytes.h"
+#include "format/group_syntax.h"
 #include "format/i_frame_syntax.h"
 #include "format/limits.h"
+#include "format/stream_index.h"
 
 namespace sac {
 namespace {
@@ -22,33 +23,35 @@ Status TakeIFrame(std::span<const std::uint8_t> payload, StreamSummary& summary)
 
 // The same order of packets that the decoder asks for.
 Status Take(const Packet& packet, PacketSummary& line, StreamSummary& summary) {
-  ByteReader reader(packet.payload);
+  GroupSyntax group;
+  std::span<const std::uint8_t> code;
+  EndSyntax end;
   switch (packet.type) {
     case PacketType::kHeader: {
-      if (summary.header) return Status::Corrupt("a second sequence header");
+      if (summary.header) return Status::Ok();  // the start comes again
       SequenceHeader header;
       SAC_RETURN_IF_ERROR(ParseSequenceHeader(packet.payload, Limits{}, header));
       summary.header = header;
       return Status::Ok();
     }
     case PacketType::kIFrame:
-      if (!summary.header || summary.i_frame) return Status::Corrupt("an I-frame out of place");
+      if (!summary.header) return Status::Corrupt("an I-frame out of place");
+      if (summary.i_frame) return Status::Ok();
       return TakeIFrame(packet.payload, summary);
     case PacketType::kGroup:
       if (!summary.i_frame) return Status::Corrupt("a group before the I-frame");
-      if (packet.payload.size() == 1 && packet.payload[0] == kOpenGroup) {
-        line.low_delay = true;
-        return Status::Ok();
-      }
-      line.frames = reader.Varint();
-      if (!reader.ok() || line.frames == 0) return Status::Corrupt("group: malformed number of frames");
+      SAC_RETURN_IF_ERROR(ParseGroup(packet.payload, group, code));
+      line.low_delay = group.open();
+      line.frames = group.frames;
       summary.frames += line.frames;
       return Status::Ok();
     case PacketType::kEnd:
       if (!summary.i_frame) return Status::Corrupt("the end before the I-frame");
       summary.ended = true;
-      if (const std::uint32_t frames = reader.Varint(); !reader.ok() || frames != summary.frames) {
-        return Status::Corrupt("end: " + std::to_string(frames) + " frames declared, " +
+      SAC_RETURN_IF_ERROR(ParseEnd(packet.payload, end));
+      summary.has_index = end.index.has_value();
+      if (end.frames != summary.frames) {
+        return Status::Corrupt("end: " + std::to_string(end.frames) + " frames declared, " +
                                std::to_string(summary.frames) + " found");
       }
       return Status::Ok();

@@ -33,6 +33,7 @@ struct StreamSummary {
   std::vector<PacketSummary> packets;
   std::uint64_t frames = 0;
   bool ended = false;
+  bool has_index = false;  // of its groups
 };
 
 // Reads packets to the end of `input`. When the stream is damaged or truncated, `summary` holds what comes before.

@@ -17,6 +17,16 @@ const HarmonicBasis& BasisOf(const Shape& shape, Plane plane) {
 
 }  // namespace
 
+Positions ToPositions(const PositionMatrix& matrix) {
+  Positions out(static_cast<std::size_t>(matrix.rows()));
+  for (std::size_t v = 0; v < out.size(); ++v) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      out[v][a] = static_cast<float>(matrix(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(a)));
+    }
+  }
+  return out;
+}
+
 Eigen::VectorXd PlaneUnits(const Shape& shape, const SequenceHeader& header, Plane plane) {
   const HarmonicBasis& basis = BasisOf(shape, plane);
   Eigen::ArrayXd counts(static_cast<Eigen::Index>(basis.order.size()));

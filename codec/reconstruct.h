@@ -5,12 +5,16 @@
 #include <span>
 #include <vector>
 
+#include "codec/mesh.h"
 #include "codec/poisson_system.h"
 #include "codec/shape.h"
 #include "format/prediction.h"
 #include "format/sequence_header.h"
 
 namespace sac {
+
+// Rounded to floats, once.
+Positions ToPositions(const PositionMatrix& matrix);
 
 // The values of one plane at the vertices, harmonics times coefficients (spec.md 6.5.1). Only harmonics whose
 // coefficients changed are touched.

@@ -9,6 +9,7 @@
 #include "codec/decode/decoder.h"
 #include "conformance/stream_parts.h"
 #include "format/bytes.h"
+#include "format/stream_index.h"
 
 namespace sac {
 namespace {
@@ -80,7 +81,7 @@ class Listing {
         element("side information, a range code");
         break;
       case PacketType::kGroup:
-        for (const char* name : {"frames", "pyramid"}) element(number(name, reader.Varint()));
+        for (const char* name : {"frames", "first_frame", "pyramid"}) element(number(name, reader.Varint()));
         reader.Bytes(reader.remaining());
         element("frames, a range code");
         break;
@@ -103,9 +104,7 @@ std::string StreamListing() {
   listing.AddPacket(PacketType::kHeader, WriteSequenceHeader(parts.header), "sequence header");
   listing.AddPacket(PacketType::kIFrame, WriteIFrame(parts.i_frame, parts.header), "I-frame");
   listing.AddPacket(PacketType::kGroup, parts.groups.at(0), "group");
-  ByteWriter end;
-  end.Varint(parts.frames);
-  listing.AddPacket(PacketType::kEnd, end.bytes(), "end");
+  listing.AddPacket(PacketType::kEnd, WriteEnd({parts.frames, std::nullopt}), "end");
   return listing.text();
 }
 

@@ -9,6 +9,7 @@
 #include "format/bytes.h"
 #include "format/crc32.h"
 #include "format/frame_coder.h"
+#include "format/group_syntax.h"
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
 
@@ -38,13 +39,13 @@ using TakeFrame = std::function<void(const FrameSlot&, const FrameCoefficients&)
 
 Status ReadGroup(std::span<const std::uint8_t> payload, const SequenceHeader& header, const PlaneLayouts& layouts,
                  const TakeFrame& take) {
-  ByteReader reader(payload);
-  const std::uint32_t frames = reader.Varint(), pyramid = reader.Varint();
-  if (!reader.ok()) return Status::Corrupt("malformed group");
-  RangeDecoder range(payload.subspan(reader.position()));
+  GroupSyntax group;
+  std::span<const std::uint8_t> code;
+  SAC_RETURN_IF_ERROR(ParseGroup(payload, group, code));
+  RangeDecoder range(code);
   FrameCoder<RangeDecoder> coder(header, layouts);
-  std::vector<FrameSlot> slots = GroupStructure(frames, pyramid);
-  std::vector<std::size_t> slot_of(frames);
+  std::vector<FrameSlot> slots = GroupStructure(group.frames, group.pyramid);
+  std::vector<std::size_t> slot_of(group.frames);
   for (std::size_t i = 0; i < slots.size(); ++i) {
     FrameSyntax frame;
     if (!coder.Code(range, slots[i], frame)) return Status::Corrupt("malformed frame");
@@ -92,7 +93,7 @@ Status ReadCoefficients(std::span<const std::uint8_t> stream, const TakeFrame& t
     if (packet->type == PacketType::kIFrame) SAC_RETURN_IF_ERROR(ParseLayouts(packet->payload, header, layouts));
     if (packet->type == PacketType::kFrame) SAC_RETURN_IF_ERROR(ReadFrame(packet->payload, *open, take));
     if (packet->type != PacketType::kGroup) continue;
-    if (packet->payload.size() == 1 && packet->payload[0] == kOpenGroup) {
+    if (OpensGroup(packet->payload)) {
       open.emplace(header, layouts);
     } else {
       SAC_RETURN_IF_ERROR(ReadGroup(packet->payload, header, layouts, take));

@@ -9,7 +9,9 @@
 #include "codec/decode/draco_mesh.h"
 #include "codec/encode/position_search.h"
 #include "format/bytes.h"
+#include "format/group_syntax.h"
 #include "format/packet.h"
+#include "format/stream_index.h"
 
 namespace sac {
 namespace {
@@ -98,13 +100,11 @@ class Collection {
   void ChangePackets(const char* rule, const char* name,
                      const std::function<void(std::vector<std::pair<PacketType, Bytes>>&)>& change) {
     const StreamParts parts = SmallStream();
-    ByteWriter end;
-    end.Varint(parts.frames);
     std::vector<std::pair<PacketType, Bytes>> packets = {
         {PacketType::kHeader, WriteSequenceHeader(parts.header)},
         {PacketType::kIFrame, WriteIFrame(parts.i_frame, parts.header)},
         {PacketType::kGroup, parts.groups[0]},
-        {PacketType::kEnd, end.bytes()},
+        {PacketType::kEnd, WriteEnd({parts.frames, std::nullopt})},
     };
     change(packets);
     Bytes stream = Magic();
@@ -153,9 +153,18 @@ void AddPackets(Collection& c) {
   c.Add("R5", "magic_only", Magic());
   c.Add("R5", "last_byte", {good.begin(), good.end() - 1});
   c.ChangePackets("R5", "no_end", [](Packets& p) { p.pop_back(); });
-  c.ChangePackets("R6", "second_header", [](Packets& p) { p.insert(p.begin() + 1, p[0]); });
+  c.ChangePackets("R6", "two_headers", [](Packets& p) { p.insert(p.begin() + 1, p[0]); });
+  c.ChangePackets("R6", "no_i_frame", [](Packets& p) { p.insert(p.begin() + 2, p[0]); });
+  c.ChangePackets("R6", "another", [](Packets& p) {
+    p.insert(p.begin() + 3, {p[0], p[1]});
+    p[3].second.back() ^= 1;
+  });
   c.ChangePackets("R7", "no_header", [](Packets& p) { p.erase(p.begin()); });
-  c.ChangePackets("R7", "second_i_frame", [](Packets& p) { p.insert(p.begin() + 3, p[1]); });
+  c.ChangePackets("R7", "alone", [](Packets& p) { p.insert(p.begin() + 3, p[1]); });
+  c.ChangePackets("R7", "another", [](Packets& p) {
+    p.insert(p.begin() + 3, {p[0], p[1]});
+    p[4].second.push_back(0);
+  });
   c.ChangePackets("R8", "group_first", [](Packets& p) { std::swap(p[1], p[2]); });
   c.ChangePackets("R9", "end_first", [](Packets& p) { p = {p[0], {PacketType::kEnd, {0}}}; });
   bytes = good;
@@ -163,6 +172,24 @@ void AddPackets(Collection& c) {
   c.Add("R10", "byte", bytes);
   c.ChangePackets("R10", "group", [](Packets& p) { p.push_back(p[2]); });
   c.ChangePackets("R58", "long", [](Packets& p) { p[3].second.push_back(0); });
+  const auto index = [&](const char* rule, const char* name, const std::function<void(EndSyntax&)>& change) {
+    c.ChangePackets(rule, name, [&](Packets& p) {
+      const auto start =
+          static_cast<std::uint32_t>(4 + PacketSize(p[0].second.size()) + PacketSize(p[1].second.size()));
+      EndSyntax end{3, StreamIndex{start, {{static_cast<std::uint32_t>(PacketSize(p[2].second.size())), 3}}}};
+      change(end);
+      p[3].second = WriteEnd(end);
+    });
+  };
+  index("R67", "first_group", [](EndSyntax& end) { --end.index->first_group; });
+  index("R67", "bytes", [](EndSyntax& end) { ++end.index->groups[0].bytes; });
+  index("R67", "too_many", [](EndSyntax& end) { end.index->groups.push_back({0, 0}); });
+  index("R67", "none", [](EndSyntax& end) { end.index->groups.clear(); });
+  index("R58", "sum", [](EndSyntax& end) { end.index->groups[0].frames = 2; });
+  c.ChangePackets("R58", "end_size", [](Packets& p) {
+    p[3].second = WriteEnd({3, StreamIndex{4, {{1, 3}}}});
+    ++p[3].second[p[3].second.size() - 4];
+  });
   c.ChangePackets("R58", "empty", [](Packets& p) { p[3].second.clear(); });
   c.ChangePackets("R59", "too_few", [](Packets& p) { p[3].second = {2}; });
   c.ChangePackets("R59", "too_many", [](Packets& p) { p[3].second = {4}; });
@@ -173,12 +200,15 @@ void AddPackets(Collection& c) {
   c.ChangePackets("R24", "empty", [](Packets& p) { p[1].second.clear(); });
   c.ChangePackets("R30", "long", [](Packets& p) { p[1].second.insert(p[1].second.end(), {0, 0, 0, 0, 1}); });
   c.ChangePackets("R30", "short", [](Packets& p) { p[1].second.resize(p[1].second.size() - 9); });
-  c.ChangePackets("R47", "no_frames", [](Packets& p) { p[2].second = {0, 1}; });
-  c.ChangePackets("R47", "no_pyramid", [](Packets& p) { p[2].second = {1, 0}; });
+  c.ChangePackets("R47", "no_frames", [](Packets& p) { p[2].second = {0, 0, 1}; });
+  c.ChangePackets("R47", "no_pyramid", [](Packets& p) { p[2].second = {1, 0, 0}; });
   c.ChangePackets("R47", "empty", [](Packets& p) { p[2].second.clear(); });
-  c.ChangePackets("R47", "malformed", [](Packets& p) { p[2].second = {0x81, 0x00, 1}; });
+  c.ChangePackets("R47", "malformed", [](Packets& p) { p[2].second = {0x81, 0x00, 0, 1}; });
+  c.ChangePackets("R66", "too_late", [](Packets& p) { p[2].second[1] = 1; });
+  c.ChangePackets("R66", "too_early", [](Packets& p) { p.insert(p.begin() + 3, p[2]); });
+  c.ChangePackets("R49", "numbers", [](Packets& p) { p[2].second = WriteGroup({3, 0xfffffffeu, 1}, {}); });
   c.ChangePackets("R56", "long", [](Packets& p) { p[2].second.insert(p[2].second.end(), {0, 0, 0, 0, 1}); });
-  c.ChangePackets("R56", "short", [](Packets& p) { p[2].second.resize(4); });
+  c.ChangePackets("R56", "short", [](Packets& p) { p[2].second.resize(5); });
 }
 
 void AddRecords(Collection& c) {
@@ -187,9 +217,9 @@ void AddRecords(Collection& c) {
                            const char* status = "corrupt") {
     StreamParts parts = SmallStream();
     const auto fill = [](std::uint32_t i, FrameSyntax& frame) { frame.planes[kMotion][0] = 1 + static_cast<int>(i); };
-    Bytes group = CodeOpenGroup(parts, 2, fill);
-    Bytes after(group.begin() + 6, group.end());
-    group.resize(6);
+    Bytes group = CodeOpenGroup(parts, 2, fill, 3);
+    Bytes after(group.begin() + 7, group.end());
+    group.resize(7);
     change(after);
     group.insert(group.end(), after.begin(), after.end());
     parts.open_groups = {group};
@@ -214,7 +244,7 @@ void AddRecords(Collection& c) {
   const auto frame = [&](const char* rule, const char* name, const Bytes& code) {
     StreamParts parts = SmallStream();
     RecordWriter writer;
-    Bytes& group = parts.open_groups.emplace_back(writer.Open());
+    Bytes& group = parts.open_groups.emplace_back(writer.Open(3));
     for (const Bytes& part : {writer.Frame(code), writer.End()}) group.insert(group.end(), part.begin(), part.end());
     parts.frames += 1;
     c.Add(rule, name, parts.Join());

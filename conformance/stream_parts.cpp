@@ -11,7 +11,9 @@
 #include "codec/shape.h"
 #include "format/bytes.h"
 #include "format/frame_coder.h"
+#include "format/group_syntax.h"
 #include "format/packet.h"
+#include "format/stream_index.h"
 
 namespace sac {
 namespace {
@@ -37,9 +39,7 @@ Bytes StreamParts::Join() const {
   AppendPacket(stream, PacketType::kIFrame, WriteIFrame(i_frame, header));
   for (const Bytes& group : groups) AppendPacket(stream, PacketType::kGroup, group);
   for (const Bytes& group : open_groups) stream.insert(stream.end(), group.begin(), group.end());
-  ByteWriter end;
-  end.Varint(frames);
-  AppendPacket(stream, PacketType::kEnd, end.bytes());
+  AppendPacket(stream, PacketType::kEnd, WriteEnd({frames, std::nullopt}));
   return stream;
 }
 
@@ -59,7 +59,7 @@ StreamParts Split(const Bytes& stream) {
     std::optional<Packet> packet;
     Require(packets.Read(rest, packet));
     if (!packet) break;
-    ByteReader reader(packet->payload);
+    EndSyntax end;
     switch (packet->type) {
       case PacketType::kHeader:
         Require(ParseSequenceHeader(packet->payload, limits, parts.header));
@@ -71,7 +71,8 @@ StreamParts Split(const Bytes& stream) {
         parts.groups.push_back(packet->payload);
         break;
       case PacketType::kEnd:
-        parts.frames = reader.Varint();
+        Require(ParseEnd(packet->payload, end));
+        parts.frames = end.frames;
         break;
       case PacketType::kFrame:
       case PacketType::kGroupEnd:
@@ -94,10 +95,7 @@ void Derive(StreamParts& parts) {
 }
 
 Bytes CodeGroup(const StreamParts& parts, std::uint32_t frames, std::uint32_t pyramid,
-                const std::function<void(std::uint32_t, FrameSyntax&)>& fill) {
-  ByteWriter payload;
-  payload.Varint(frames);
-  payload.Varint(pyramid);
+                const std::function<void(std::uint32_t, FrameSyntax&)>& fill, std::uint32_t first_frame) {
   RangeEncoder range;
   FrameCoder<RangeEncoder> coder(parts.header, parts.layouts);
   std::uint32_t index = 0;
@@ -108,15 +106,14 @@ Bytes CodeGroup(const StreamParts& parts, std::uint32_t frames, std::uint32_t py
     fill(index++, frame);
     if (!coder.Code(range, slot, frame)) break;
   }
-  payload.Bytes(range.Finish());
-  return payload.bytes();
+  return WriteGroup({frames, first_frame, pyramid}, range.Finish());
 }
 
 Bytes CodeOpenGroup(const StreamParts& parts, std::uint32_t frames,
-                    const std::function<void(std::uint32_t, FrameSyntax&)>& fill) {
+                    const std::function<void(std::uint32_t, FrameSyntax&)>& fill, std::uint32_t first_frame) {
   RecordWriter records;
   ByteWriter out;
-  out.Bytes(records.Open());
+  out.Bytes(records.Open(first_frame));
   FrameCoder<RangeEncoder> coder(parts.header, parts.layouts);
   for (std::uint32_t index = 0; index < frames; ++index) {
     FrameSyntax frame;

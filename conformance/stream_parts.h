@@ -48,11 +48,11 @@ void AppendPacket(Bytes& stream, PacketType type, const Bytes& payload);
 // Codes a group whose frames `fill` makes: it is given each frame's number in coding order, with the structure's slot
 // and zeros in it. Stops after a frame that the format does not allow, which is then in the code all the same.
 Bytes CodeGroup(const StreamParts& parts, std::uint32_t frames, std::uint32_t pyramid,
-                const std::function<void(std::uint32_t, FrameSyntax&)>& fill);
+                const std::function<void(std::uint32_t, FrameSyntax&)>& fill, std::uint32_t first_frame = 0);
 
 // The packet of an open group and its records.
 Bytes CodeOpenGroup(const StreamParts& parts, std::uint32_t frames,
-                    const std::function<void(std::uint32_t, FrameSyntax&)>& fill);
+                    const std::function<void(std::uint32_t, FrameSyntax&)>& fill, std::uint32_t first_frame = 0);
 
 // Four vertices and two triangles without Draco's help, and three frames: the stream of spec.md, appendix A.
 StreamParts SmallStream();

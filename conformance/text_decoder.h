@@ -566,13 +566,25 @@ class TextStream {
       EXPECT_EQ(crc, in.U32());
       const Bytes copy(payload.begin(), payload.end());
       ByteReader reader(copy);
+      if (tag % 4 < 2) {
+        Bytes& first = starts_[tag % 4];
+        if (!first.empty()) {  // it comes again
+          EXPECT_EQ(copy, first);
+          continue;
+        }
+        first = copy;
+      }
       if (tag % 4 == 0) ReadHeader(reader);
       if (tag % 4 == 1) ReadIFrame(reader);
-      if (tag % 4 == 2 && copy == Bytes{0}) ReadOpenGroup(in);
-      if (tag % 4 == 2 && copy != Bytes{0}) ReadGroup(reader);
-      if (tag % 4 == 3) {
+      if (tag % 4 == 2) {
+        begins_.push_back(start);
+        first_frames_.push_back(static_cast<std::uint32_t>(frames_.size()));
+        const std::uint32_t frames = reader.Varint();
         EXPECT_EQ(reader.Varint(), frames_.size());
+        if (frames == 0) ReadOpenGroup(in);
+        if (frames != 0) ReadGroup(frames, reader);
       }
+      if (tag % 4 == 3) ReadEnd(reader, start, in.position() - start);
     }
     return frames_;
   }
@@ -581,7 +593,7 @@ class TextStream {
  private:
   void ReadHeader(ByteReader& in) {
     EXPECT_EQ(in.U8(), 0);
-    EXPECT_EQ(in.U8(), 5);
+    EXPECT_EQ(in.U8(), 6);
     EXPECT_EQ(in.U8(), 0);  // reference_shape
     in.U8();                // position_bits
     growth_ = in.U8();
@@ -727,8 +739,23 @@ class TextStream {
     }
   }
 
-  void ReadGroup(ByteReader& reader) {
-    const std::uint32_t frames = reader.Varint(), pyramid = reader.Varint();
+  // Section 3.2.
+  void ReadEnd(ByteReader& in, std::size_t start, std::size_t size) {
+    EXPECT_EQ(in.Varint(), frames_.size());
+    if (in.remaining() == 0) return;
+    std::uint64_t byte = in.Varint(), frame = 0;
+    for (std::size_t i = 0; in.remaining() > 4; ++i) {
+      EXPECT_EQ(byte, begins_.at(i));
+      EXPECT_EQ(frame, first_frames_.at(i));
+      byte += in.Varint();
+      frame += in.Varint();
+    }
+    EXPECT_EQ(byte, start);
+    EXPECT_EQ(in.U32(), size);
+  }
+
+  void ReadGroup(std::uint32_t frames, ByteReader& reader) {
+    const std::uint32_t pyramid = reader.Varint();
     const auto rest = reader.Bytes(reader.remaining());
     const Bytes bytes(rest.begin(), rest.end());
     TextDecoder in(bytes);
@@ -853,6 +880,9 @@ class TextStream {
   }
 
   const Bytes& bytes_;
+  std::array<Bytes, 2> starts_;              // payloads of the sequence header and of the I-frame
+  std::vector<std::size_t> begins_;          // of groups
+  std::vector<std::uint32_t> first_frames_;  // of groups
   std::int64_t growth_ = 0;
   std::uint32_t vertices_ = 0, harmonics_ = 0, patch_size_ = 0;
   Eigen::Vector3d origin_;

@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <random>
 
+#include "format/stream_index.h"
 #include "synth/synth.h"
 
 namespace sac {
@@ -117,9 +118,9 @@ Bytes Perverse() {
   std::mt19937 random(5);
   parts.frames = 0;
   for (const std::array<std::uint32_t, 2>& size : {std::array{9u, 8u}, {1u, 1u}, {7u, 3u}, {4u, 4000000000u}}) {
-    parts.groups.push_back(CodeGroup(parts, size[0], size[1], [&](std::uint32_t i, FrameSyntax& frame) {
-      FillAtRandom(random, nullptr, i, frame);
-    }));
+    parts.groups.push_back(CodeGroup(
+        parts, size[0], size[1], [&](std::uint32_t i, FrameSyntax& frame) { FillAtRandom(random, nullptr, i, frame); },
+        parts.frames));
     parts.frames += size[0];
   }
   return parts.Join();
@@ -136,10 +137,45 @@ Bytes OpenGroups() {
                       &parts.header.correction_step, &parts.header.rotation_step, &parts.header.translation_step}) {
     *step *= 1e-3f;
   }
-  parts.open_groups = {CodeOpenGroup(parts, 7, fill), CodeOpenGroup(parts, 0, still), CodeOpenGroup(parts, 3, still),
-                       CodeOpenGroup(parts, 5, fill)};
-  parts.frames += 15;
+  for (const std::uint32_t frames : {7u, 0u, 3u, 5u}) {
+    parts.open_groups.push_back(frames == 3 ? CodeOpenGroup(parts, frames, still, parts.frames)
+                                            : CodeOpenGroup(parts, frames, fill, parts.frames));
+    parts.frames += frames;
+  }
   return parts.Join();
+}
+
+// The start comes again and again, and an index ends it: groups of all kinds, one of no frames. Without Draco, too.
+Bytes RepeatedStart() {
+  StreamParts parts = SmallStream();
+  const auto still = [](std::uint32_t, FrameSyntax&) {};
+  const Bytes header = WriteSequenceHeader(parts.header), i_frame = WriteIFrame(parts.i_frame, parts.header);
+  Bytes stream = Magic();
+  const auto start = [&] {
+    AppendPacket(stream, PacketType::kHeader, header);
+    AppendPacket(stream, PacketType::kIFrame, i_frame);
+  };
+  start();
+  EndSyntax end{0, StreamIndex{static_cast<std::uint32_t>(stream.size()), {}}};
+  std::size_t begin = stream.size();
+  // What follows the last group is the next one's start.
+  const auto group_ends = [&](std::uint32_t frames, bool again) {
+    if (again) start();
+    end.index->groups.push_back({static_cast<std::uint32_t>(stream.size() - begin), frames});
+    begin = stream.size();
+    end.frames += frames;
+  };
+  AppendPacket(stream, PacketType::kGroup, parts.groups[0]);
+  group_ends(3, true);
+  for (const std::uint32_t frames : {0u, 2u}) {
+    const Bytes open = CodeOpenGroup(parts, frames, still, end.frames);
+    stream.insert(stream.end(), open.begin(), open.end());
+    group_ends(frames, frames == 2);
+  }
+  AppendPacket(stream, PacketType::kGroup, CodeGroup(parts, 200, 16, still, end.frames));
+  group_ends(200, false);
+  AppendPacket(stream, PacketType::kEnd, WriteEnd(end));
+  return stream;
 }
 
 Bytes PerversePrevious() {
@@ -250,6 +286,12 @@ std::vector<ValidVector> ValidVectors() {
   encode("low_delay_previous", "an open group against the frame before", Synth(SynthKind::kFlag, 100, 5),
          low_delay_previous);
   vectors.push_back({"open_groups", "a whole group, open groups with explicit references, one empty", OpenGroups()});
+  vectors.push_back({"repeated_start", "the start again between groups, an index, an empty group", RepeatedStart()});
+  EncoderSettings broadcast = chain;
+  broadcast.group = 3;
+  broadcast.repeat_start = 2;
+  encode("broadcast", "the start again before every second group, a Draco mesh", Synth(SynthKind::kFlag, 100, 11),
+         broadcast);
   vectors.push_back({"perverse",
                      "explicit references of all kinds, all magnitudes, level growth 2, levels above 2, a pyramid much "
                      "longer than its group",

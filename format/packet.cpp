@@ -6,6 +6,7 @@
 
 #include "format/bytes.h"
 #include "format/crc32.h"
+#include "format/group_syntax.h"
 
 namespace sac {
 
@@ -17,9 +18,26 @@ std::vector<std::uint8_t> WritePacket(PacketType type, std::span<const std::uint
   return std::move(out.bytes());
 }
 
-std::vector<std::uint8_t> RecordWriter::Open() {
+std::size_t PacketSize(std::size_t payload) {
+  std::size_t size = payload + 5;
+  for (std::uint64_t tag = std::uint64_t{payload} * 4; tag >= 0x80; tag >>= 7) ++size;
+  return size;
+}
+
+bool ParsePacket(std::span<const std::uint8_t> bytes, Packet& packet) {
+  ByteReader reader(bytes);
+  const std::uint32_t tag = reader.Varint();
+  const std::span<const std::uint8_t> payload = reader.Bytes(tag / 4);
+  const std::uint32_t crc = Crc32(bytes.first(reader.position()));
+  if (reader.U32() != crc || !reader.ok() || reader.remaining() != 0) return false;
+  packet.type = static_cast<PacketType>(tag & 3);
+  packet.payload.assign(payload.begin(), payload.end());
+  return true;
+}
+
+std::vector<std::uint8_t> RecordWriter::Open(std::uint32_t first_frame) {
   crc_ = 0;
-  return WritePacket(PacketType::kGroup, std::span(&kOpenGroup, 1));
+  return WritePacket(PacketType::kGroup, WriteGroup({0, first_frame, 1}, {}));
 }
 
 std::vector<std::uint8_t> RecordWriter::Frame(std::span<const std::uint8_t> code) {
@@ -43,6 +61,20 @@ Status Truncated(std::uint64_t bytes, std::uint64_t frames) {
   if (bytes == 0) return Status::Corrupt("the stream is empty");
   if (frames == 0) return Status::Corrupt("the stream is truncated before its first frame");
   return Status::Corrupt("the stream is truncated after frame " + std::to_string(frames));
+}
+
+void PacketReader::Restart(std::uint64_t position, bool in_open_group) {
+  pending_.clear();
+  needed_ = 0;
+  in_open_group_ = in_open_group;
+  group_crc_ = 0;
+  magic_seen_ = true;
+  position_ = position;
+}
+
+std::vector<std::uint8_t> PacketReader::TakePending() {
+  needed_ = 0;
+  return std::exchange(pending_, {});
 }
 
 Status PacketReader::TakeTag() {
@@ -79,7 +111,7 @@ Status PacketReader::TakePacket(Packet& packet) {
   packet.type = type_;
   packet.payload.assign(checked.begin() + static_cast<std::ptrdiff_t>(tag_size_), checked.end());
   if (type_ == PacketType::kGroup) {
-    in_open_group_ = packet.payload.size() == 1 && packet.payload[0] == kOpenGroup;
+    in_open_group_ = OpensGroup(packet.payload);
     group_crc_ = 0;
   } else {
     if (type_ == PacketType::kGroupEnd) in_open_group_ = false;

@@ -31,15 +31,17 @@ struct Packet {
 // The bytes of a packet (spec.md 3): varint(payload size * 4 + type), payload, CRC-32 of both.
 std::vector<std::uint8_t> WritePacket(PacketType type, std::span<const std::uint8_t> payload);
 
-// The payload of a group packet that opens a group: its frames follow in records of their own, as they come, until the
-// record that ends it (spec.md 3.1).
-inline constexpr std::uint8_t kOpenGroup = 0;
+// The bytes of a packet with a payload of so many.
+std::size_t PacketSize(std::size_t payload);
 
-// The records of an open group.
+// The inverse of WritePacket(). False unless `bytes` are one whole packet with the right CRC.
+bool ParsePacket(std::span<const std::uint8_t> bytes, Packet& packet);
+
+// The records of an open group, whose frames follow as they come (spec.md 3.1).
 class RecordWriter {
  public:
-  // The packet that opens the group.
-  std::vector<std::uint8_t> Open();
+  // The packet that opens the group whose first frame has this number.
+  std::vector<std::uint8_t> Open(std::uint32_t first_frame);
   // varint(size + 1), the code, one byte of the CRC-32 of all so far.
   std::vector<std::uint8_t> Frame(std::span<const std::uint8_t> code);
   // varint(0), the CRC-32 of all.
@@ -64,6 +66,10 @@ class PacketReader {
 
   // Whether the stream could end here: no packet has begun, no group is open.
   bool AtBoundary() const { return magic_seen_ && pending_.empty() && !in_open_group_; }
+  // Goes on at byte `position` of the stream, where a packet begins, or the first record of an open group.
+  void Restart(std::uint64_t position, bool in_open_group);
+  // The bytes of a packet that has begun, or whose checksum is wrong. They are forgotten here.
+  std::vector<std::uint8_t> TakePending();
   // Bytes taken so far.
   std::uint64_t position() const { return position_; }
 

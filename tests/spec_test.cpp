@@ -41,6 +41,7 @@
 #include "format/plane_models.h"
 #include "format/prediction.h"
 #include "format/range_coder.h"
+#include "format/stream_index.h"
 
 namespace sac {
 namespace {
@@ -55,6 +56,7 @@ const std::set<std::string> kRun = {"classes",
                                     "group-structure-cut",
                                     "harmonic-order",
                                     "inhomogeneity",
+                                    "index",
                                     "integers",
                                     "level-steps",
                                     "level-steps-capped",
@@ -112,9 +114,24 @@ TEST(Spec, Packet) {
   }
 }
 
+TEST(Spec, Index) {
+  const auto lines = Example("index");
+  const auto words = Words(lines.at(0));
+  const auto number = [&](std::size_t i) { return static_cast<std::uint32_t>(std::stoul(words.at(i))); };
+  EndSyntax end{number(1), StreamIndex{number(3), {}}};
+  for (std::size_t i = 5; i + 1 < words.size(); i += 2) end.index->groups.push_back({number(i), number(i + 1)});
+  const Bytes packet = WritePacket(PacketType::kEnd, WriteEnd(end));
+  EXPECT_EQ(Hex(packet), Equation(lines.at(1)).second);
+  StreamIndex read;
+  std::size_t needed = 0;
+  ASSERT_TRUE(ReadIndex(packet, read, needed).ok());
+  EXPECT_EQ(read, *end.index);
+  EXPECT_EQ(needed, packet.size());
+}
+
 TEST(Spec, Records) {
   RecordWriter records;
-  records.Open();
+  records.Open(0);
   for (const std::string& line : Example("records")) {
     const auto [what, bytes] = Equation(line);
     if (what == "end") {
@@ -520,9 +537,8 @@ TEST(Spec, TextReadsTheWholeStream) {
   }
 }
 
-// Open groups beside a whole one.
-TEST(Spec, TextReadsOpenGroups) {
-  std::ifstream file(SAC_CONFORMANCE "/valid/open_groups.sac", std::ios::binary);
+void ExpectTextReads(const std::string& name, std::size_t count_of_frames) {
+  std::ifstream file(SAC_CONFORMANCE "/valid/" + name, std::ios::binary);
   const Bytes bytes{std::istreambuf_iterator<char>(file), {}};
   TextStream stream(bytes);
   const std::vector<Eigen::MatrixXd> frames = stream.Decode();
@@ -540,9 +556,12 @@ TEST(Spec, TextReadsOpenGroups) {
     }
   }
   EXPECT_TRUE(decoder.Finish().ok());
-  EXPECT_EQ(count, 18u);
-  EXPECT_EQ(frames.size(), 18u);
+  EXPECT_EQ(count, count_of_frames);
+  EXPECT_EQ(frames.size(), count_of_frames);
 }
+
+TEST(Spec, TextReadsOpenGroups) { ExpectTextReads("open_groups.sac", 18); }
+TEST(Spec, TextReadsARepeatedStart) { ExpectTextReads("repeated_start.sac", 205); }
 
 // Section 5.5: a rough sheet with holes, a hub, repeated, degenerate and stray triangles, and loose ends.
 TEST(Spec, TextReadsPositions) {

@@ -8,6 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "format/bytes.h"
+#include "format/group_syntax.h"
 #include "format/packet.h"
 
 namespace sac {
@@ -36,9 +38,9 @@ inline Bytes Join(const std::vector<Packet>& packets) {
   std::vector<Bytes> parts{Bytes(std::begin(kMagic), std::end(kMagic))};
   RecordWriter records;
   for (const Packet& p : packets) {
-    const bool opens = p.type == PacketType::kGroup && p.payload == Bytes{kOpenGroup};
-    parts.push_back(opens                             ? records.Open()
-                    : p.type == PacketType::kFrame    ? records.Frame(p.payload)
+    const bool opens = p.type == PacketType::kGroup && OpensGroup(p.payload);
+    parts.push_back(opens                          ? records.Open(ByteReader(std::span(p.payload).subspan(1)).Varint())
+                    : p.type == PacketType::kFrame ? records.Frame(p.payload)
                     : p.type == PacketType::kGroupEnd ? records.End()
                                                       : WritePacket(p.type, p.payload));
   }

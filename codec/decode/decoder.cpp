@@ -1,121 +1,255 @@
 #include "codec/decode/decoder.h"
 
+#include <algorithm>
+#include <cmath>
 #include <exception>
-#include <limits>
+#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
 
+#include "codec/bounding_box.h"
+#include "codec/decode/frame_source.h"
+#include "codec/decode/group_parser.h"
 #include "codec/decode/i_frame.h"
+#include "codec/decode/lost_frames.h"
+#include "codec/decode/seek_table.h"
 #include "codec/reconstruct.h"
 #include "codec/shape.h"
 #include "format/bytes.h"
-#include "format/frame_coder.h"
+#include "format/crc32.h"
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
+#include "format/packet_search.h"
+#include "format/stream_index.h"
 
 namespace sac {
 namespace {
 
-Positions ToPositions(const PositionMatrix& matrix) {
-  Positions out(static_cast<std::size_t>(matrix.rows()));
-  for (std::size_t v = 0; v < out.size(); ++v) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      out[v][a] = static_cast<float>(matrix(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(a)));
-    }
-  }
-  return out;
-}
+// After damage, bytes are read again from the damaged packet on: so many times all of them, and so many beside.
+constexpr std::uint64_t kMostRereading = 4, kFreeRereading = 1 << 20;
 
 }  // namespace
 
 class Decoder::Impl {
  public:
-  explicit Impl(const DecoderSettings& settings) : limits_(settings.limits), packets_(settings.limits) {}
+  explicit Impl(const DecoderSettings& s) : settings(s), packets_(s.limits) {}
 
   Status Send(std::span<const std::uint8_t>& bytes);
-  Status Receive(DecodedFrame& frame);
+  Status Receive(Positions& positions, FrameInfo& info);
   Status Finish();
+  Status Seek(std::uint32_t frame, std::uint64_t& byte);
+  Status AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed);
+  Status Interpolate(double time, Positions& positions, FrameInfo& info);
 
+  const DecoderSettings settings;
   std::optional<SequenceHeader> header;
   std::optional<Mesh> mesh;
   std::vector<std::uint32_t> order;
+  LostFrames lost;
 
  private:
-  Status Take(Packet packet);
+  // Reads one packet, or the record of an open group, from the front of `bytes`.
+  Status Advance(std::span<const std::uint8_t>& bytes);
+  // What is left of the bytes that were read in vain.
+  Status AdvanceReplay();
+  // Goes on at the next packet that is sound, from the second byte of the one in packets_.
+  void Resynchronize();
+
+  Status Take(const Packet& packet, std::uint64_t begin);
+  Status TakeHeader(std::span<const std::uint8_t> payload);
   Status TakeIFrame(std::span<const std::uint8_t> payload);
-  Status TakeGroup(std::span<const std::uint8_t> payload);
+  Status DecodeIFrame(std::span<const std::uint8_t> payload);
+  Status TakeGroup(std::span<const std::uint8_t> payload, std::uint64_t begin);
   Status TakeFrame(std::span<const std::uint8_t> payload);
-  Status TakeEnd(std::span<const std::uint8_t> payload);
-  // Whether a group of so many frames is within the limits.
-  Status CheckGroupSize(std::uint32_t frames) const;
-  // Parses the frame of `slot`; `intra`: whether it is predicted from none.
-  Status ParseFrame(const FrameSlot& slot, RangeDecoder& range, FrameCoder<RangeDecoder>& coder, bool& intra) const;
-  Status DecodeFrame(DecodedFrame& frame);
+  Status TakeEnd(std::span<const std::uint8_t> payload, std::uint64_t begin);
+  // The frames of a group that is cut off by the end of the bytes.
+  void TakeCutGroup(std::span<const std::uint8_t> packet);
+  // Whether the stream goes on with `frame`: notes what is lost before.
+  Status ContinueAt(std::uint32_t frame);
+
+  bool Replays() const { return replayed_ < replay_.size(); }
+  // At the end of the bytes: whether there are frames in what is left of an unfinished packet.
+  bool Salvage();
+  bool FrameWaits() const { return source_ && next_out_ < source_->frames().end(); }
+  bool ReferencesPrevious() const {
+    return header->reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious);
+  }
+  void Describe(std::uint32_t frame, double time, const Positions& positions, FrameInfo& info) const;
   Status Latch(Status status) {
     if (!status.ok()) error_ = status;
     return status;
   }
+  // Runs `step`; an exception is want of memory: the limits allow more than there is.
+  Status Guard(const std::function<Status()>& step) {
+    try {
+      return Latch(step());
+    } catch (const std::exception& e) {
+      return Latch(Status::Limit(e.what()));
+    }
+  }
 
-  Limits limits_;
   PacketReader packets_;
+  std::optional<PacketSearch> search_;
+  bool damaged_ = false;              // the packet in packets_ is
+  std::vector<std::uint8_t> replay_;  // bytes to be read again, from replayed_ on
+  std::size_t replayed_ = 0;
+  std::uint64_t reread_ = 0;    // bytes that were, in all
+  std::uint64_t position_ = 0;  // in the stream, of the next byte to be read
   std::optional<Status> error_;
-  bool ended_ = false;
-  std::uint32_t frame_count_ = 0;
+  bool ended_ = false;     // the end packet has been read
+  bool finished_ = false;  // no more bytes will be sent
+
+  std::vector<std::uint8_t> header_bytes_;
+  std::uint32_t i_frame_crc_ = 0;
+  std::size_t i_frame_size_ = 0;
+  bool after_header_ = false;
 
   Shape shape_;  // the members below refer to it
-  std::unique_ptr<Reconstructor> reconstructor_;
+  std::optional<GroupParser> parser_;
+  std::optional<FrameSource> source_;
+  bool group_begins_ = false;
 
-  // The group being decoded: its frames by time.
-  std::vector<FrameCoefficients> group_;
-  std::vector<bool> group_intra_;
-  std::size_t next_in_group_ = 0;
-
-  std::optional<FrameCoder<RangeDecoder>> open_group_;  // whose frames come one by one
+  std::optional<std::uint64_t> next_frame_ = 0;  // that the stream has; none after Seek()
+  std::uint64_t next_out_ = 0;                   // of those in source_
+  std::uint64_t wanted_ = 0;                     // frames before are not given out
+  bool from_start_ = true;                       // all packets have been read
+  SeekTable places_;
+  std::optional<std::uint32_t> total_frames_;
 };
 
 Status Decoder::Impl::Send(std::span<const std::uint8_t>& bytes) {
   if (error_) return *error_;
-  if (next_in_group_ < group_.size()) return Status::Ok();
-  if (ended_) return bytes.empty() ? Status::Ok() : Latch(Status::Corrupt("bytes after the end of the stream"));
+  if (FrameWaits()) return Status::Ok();
+  if (Replays()) return AdvanceReplay();
+  return Guard([&] {
+    const Status status = Advance(bytes);
+    if (std::exchange(damaged_, false)) Resynchronize();
+    return status;
+  });
+}
+
+Status Decoder::Impl::AdvanceReplay() {
+  return Guard([this] {
+    Status status;
+    while (status.ok() && Replays() && !FrameWaits()) {
+      std::span<const std::uint8_t> rest = std::span(replay_).subspan(replayed_);
+      const std::size_t before = rest.size();
+      status = Advance(rest);
+      replayed_ += before - rest.size();
+      if (std::exchange(damaged_, false)) Resynchronize();
+      if (replayed_ == replay_.size()) {
+        replay_.clear();
+        replayed_ = 0;
+      }
+    }
+    return status;
+  });
+}
+
+Status Decoder::Impl::Advance(std::span<const std::uint8_t>& bytes) {
+  if (ended_) {
+    if (!bytes.empty() && !settings.skip_damage) return Status::Corrupt("bytes after the end of the stream");
+    bytes = {};
+    return Status::Ok();
+  }
   std::optional<Packet> packet;
-  SAC_RETURN_IF_ERROR(Latch(packets_.Read(bytes, packet)));
+  const std::size_t before = bytes.size();
+  Status status;
+  if (search_) {
+    search_->Read(bytes, packet);
+  } else {
+    status = packets_.Read(bytes, packet);
+  }
+  position_ += before - bytes.size();
+  if (!status.ok()) {
+    if (!settings.skip_damage) return status;
+    damaged_ = true;
+    return Status::Ok();
+  }
   if (!packet) return Status::Ok();
-  try {
-    return Latch(Take(std::move(*packet)));
-  } catch (const std::exception& e) {  // memory: the limits allow more than there is
-    return Latch(Status::Limit(e.what()));
+  if (search_) {
+    packets_.Restart(position_, packet->type == PacketType::kGroup && OpensGroup(packet->payload));
+    search_.reset();
+    // Bytes that lie again and again would be read again and again.
+    if (reread_ > kMostRereading * position_ + kFreeRereading) search_.emplace(settings.limits);
+  }
+  const std::size_t size = PacketSize(packet->payload.size());
+  return Take(*packet, position_ - std::min<std::uint64_t>(size, position_));
+}
+
+void Decoder::Impl::Resynchronize() {
+  std::vector<std::uint8_t> pending = packets_.TakePending();
+  search_.emplace(settings.limits);
+  from_start_ = false;
+  if (parser_) parser_->Close();
+  if (pending.empty()) return;
+  const std::size_t back = pending.size() - 1;
+  position_ -= back;
+  reread_ += back;
+  if (pending.size() <= replayed_) {
+    replayed_ -= back;
+  } else {  // then all of the replay is in it
+    replay_ = std::move(pending);
+    replayed_ = 1;
   }
 }
 
-Status Decoder::Impl::Take(Packet packet) {
+Status Decoder::Impl::Take(const Packet& packet, std::uint64_t begin) {
+  const bool follows_header = std::exchange(after_header_, false), is_i_frame = packet.type == PacketType::kIFrame;
+  if (header && follows_header != is_i_frame && !settings.skip_damage) {
+    return Status::Corrupt(is_i_frame ? "an I-frame without its sequence header"
+                                      : "a sequence header without an I-frame");
+  }
   switch (packet.type) {
-    case PacketType::kHeader: {
-      if (header) return Status::Corrupt("a second sequence header");
-      SequenceHeader parsed;
-      SAC_RETURN_IF_ERROR(ParseSequenceHeader(packet.payload, limits_, parsed));
-      header = parsed;
-      return Status::Ok();
-    }
+    case PacketType::kHeader:
+      return TakeHeader(packet.payload);
     case PacketType::kIFrame:
-      if (!header || mesh) return Status::Corrupt("an I-frame out of place");
       return TakeIFrame(packet.payload);
     case PacketType::kGroup:
-      if (!mesh) return Status::Corrupt("a group before the I-frame");
-      return TakeGroup(packet.payload);
+      return TakeGroup(packet.payload, begin);
     case PacketType::kEnd:
-      if (!mesh) return Status::Corrupt("the end before the I-frame");
-      return TakeEnd(packet.payload);
+      return TakeEnd(packet.payload, begin);
     case PacketType::kFrame:
       return TakeFrame(packet.payload);
     case PacketType::kGroupEnd:
-      open_group_.reset();
+      if (parser_) parser_->Close();
       return Status::Ok();
   }
   return Status::Corrupt("unknown packet");
 }
 
+Status Decoder::Impl::TakeHeader(std::span<const std::uint8_t> payload) {
+  if (header) {
+    after_header_ = std::ranges::equal(payload, header_bytes_);
+    if (after_header_ || settings.skip_damage) return Status::Ok();
+    return Status::Corrupt("a second sequence header that is not the first");
+  }
+  SequenceHeader parsed;
+  SAC_RETURN_IF_ERROR(ParseSequenceHeader(payload, settings.limits, parsed));
+  header = parsed;
+  header_bytes_.assign(payload.begin(), payload.end());
+  after_header_ = true;
+  return Status::Ok();
+}
+
 Status Decoder::Impl::TakeIFrame(std::span<const std::uint8_t> payload) {
+  const std::uint32_t crc = Crc32(payload);
+  if (!header) return settings.skip_damage ? Status::Ok() : Status::Corrupt("an I-frame before the sequence header");
+  if (mesh) {
+    if ((crc == i_frame_crc_ && payload.size() == i_frame_size_) || settings.skip_damage) return Status::Ok();
+    return Status::Corrupt("a second I-frame that is not the first");
+  }
+  SAC_RETURN_IF_ERROR(DecodeIFrame(payload));
+  i_frame_crc_ = crc;
+  i_frame_size_ = payload.size();
+  parser_.emplace(*header, shape_.layouts, settings.limits);
+  source_.emplace(shape_, *header, settings.threads);
+  places_.Start(position_);
+  return Status::Ok();
+}
+
+Status Decoder::Impl::DecodeIFrame(std::span<const std::uint8_t> payload) {
   IFrameSyntax syntax;
   SAC_RETURN_IF_ERROR(ParseIFrame(payload, *header, syntax));
   DracoMesh draco;
@@ -129,138 +263,226 @@ Status Decoder::Impl::TakeIFrame(std::span<const std::uint8_t> payload) {
   out.uv_triangles = std::move(decoded.uv_triangles);
   out.normals = std::move(decoded.normals);
   out.colors = std::move(decoded.colors);
-  SAC_RETURN_IF_ERROR(
-      BuildShape(*header, std::move(decoded.mesh), syntax.harmonics, syntax.samples_per_harmonic, limits_, shape_));
+  SAC_RETURN_IF_ERROR(BuildShape(*header, std::move(decoded.mesh), syntax.harmonics, syntax.samples_per_harmonic,
+                                 settings.limits, shape_));
   if (!SameFingerprint(shape_.basis.Fingerprint(), syntax.fingerprint)) {
     return Status::Unsupported("the harmonics computed here are not the encoder's");
   }
   out.positions = ToPositions(shape_.positions);
   mesh = std::move(out);
   order = std::move(syntax.order);
-  reconstructor_ = std::make_unique<Reconstructor>(shape_, *header);
   return Status::Ok();
 }
 
-Status Decoder::Impl::CheckGroupSize(std::uint32_t frames) const {
-  if (frames > limits_.frames_per_group) {
-    return Status::Limit(std::to_string(frames) + " frames in a group, the limit is " +
-                         std::to_string(limits_.frames_per_group));
+Status Decoder::Impl::ContinueAt(std::uint32_t frame) {
+  const std::uint64_t expected = next_frame_.value_or(frame);
+  next_frame_ = frame;
+  if (frame == expected) return Status::Ok();
+  if (!settings.skip_damage) {
+    return Status::Corrupt("frame " + std::to_string(frame) + " where frame " + std::to_string(expected) +
+                           " is expected");
   }
-  if (frames * FrameValues(shape_.layouts) > limits_.group_values) {
-    return Status::Limit("a group holds more coefficients than the limit");
+  if (frame < expected) {
+    next_frame_ = expected;
+    return Status::Corrupt("frames that were there before");
   }
+  lost.Add(static_cast<std::uint32_t>(expected), frame);
   return Status::Ok();
 }
 
-Status Decoder::Impl::ParseFrame(const FrameSlot& slot, RangeDecoder& range, FrameCoder<RangeDecoder>& coder,
-                                 bool& intra) const {
-  FrameSyntax frame;
-  if (!coder.Code(range, slot, frame)) return Status::Corrupt("malformed coefficients");
-  const bool previous = header->reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious);
-  if (previous && !frame.intra() && frame.slot.references != slot.references) {
-    return Status::Corrupt("not predicted from the frame before");
+Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload, std::uint64_t begin) {
+  if (!mesh) return settings.skip_damage ? Status::Ok() : Status::Corrupt("a group before the I-frame");
+  GroupSyntax group;
+  std::span<const std::uint8_t> code;
+  CodedFrames frames;
+  Status status = ParseGroup(payload, group, code);
+  if (status.ok()) status = ContinueAt(group.first_frame);
+  if (!status.ok()) return settings.skip_damage ? Status::Ok() : status;
+  places_.Add(begin, group.first_frame);
+  if (group.open()) {
+    parser_->Open(group.first_frame);
+    group_begins_ = true;
+    return Status::Ok();
   }
-  intra = frame.intra();
-  return Status::Ok();
-}
-
-Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload) {
-  ByteReader reader(payload);
-  const std::uint32_t frames = reader.Varint();
-  const bool opens = frames == kOpenGroup && reader.remaining() == 0;
-  if (!reader.ok() || (frames == 0 && !opens)) return Status::Corrupt("group: malformed number of frames");
-  if (opens) {
-    open_group_.emplace(*header, shape_.layouts);
-    return reconstructor_->StartGroup() ? Status::Ok() : Status::Corrupt("the first frame's shape is singular");
+  const std::uint64_t end = std::uint64_t{group.first_frame} + group.frames;
+  next_frame_ = end;
+  if (end <= wanted_) return Status::Ok();
+  status = parser_->Parse(group, code, frames);
+  if (status.ok()) status = source_->Take(std::move(frames), true);
+  if (!status.ok() && settings.skip_damage) {
+    lost.Add(group.first_frame, end);
+    return Status::Ok();
   }
-  SAC_RETURN_IF_ERROR(CheckGroupSize(frames));
-  if (frames > 0xffffffffu - frame_count_) return Status::Corrupt("group: too many frames");
-  const std::uint32_t pyramid = reader.Varint();
-  if (!reader.ok() || pyramid == 0) return Status::Corrupt("group: malformed pyramid");
-  const bool previous = header->reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious);
-  if (previous && pyramid != 1) return Status::Corrupt("group: B-frames against the previous frame");
-
-  RangeDecoder range(payload.subspan(reader.position()));
-  FrameCoder<RangeDecoder> coder(*header, shape_.layouts);
-  const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
-  group_.assign(frames, FrameCoefficients());
-  group_intra_.assign(frames, false);
-  next_in_group_ = frames;  // none is ready before all are parsed
-  for (const FrameSlot& slot : structure) {
-    bool intra = false;
-    if (const Status s = ParseFrame(slot, range, coder, intra); !s.ok()) {
-      return {s.code(), "frame " + std::to_string(frame_count_ + slot.display) + ": " + s.message()};
-    }
-    group_intra_[slot.display] = intra;
-  }
-  if (!range.AtEnd()) return Status::Corrupt("group: bytes after the last frame");
-  std::vector<FrameCoefficients> coded = coder.TakeFrames();
-  for (std::size_t i = 0; i < structure.size(); ++i) group_[structure[i].display] = std::move(coded[i]);
-  if (!reconstructor_->StartGroup()) return Status::Corrupt("the first frame's shape is singular");
-  next_in_group_ = 0;
-  return Status::Ok();
+  next_out_ = group.first_frame;
+  return status;
 }
 
 Status Decoder::Impl::TakeFrame(std::span<const std::uint8_t> payload) {
-  const auto index = static_cast<std::uint32_t>(open_group_->predictor().frames().size());
-  SAC_RETURN_IF_ERROR(CheckGroupSize(index + 1));
-  if (frame_count_ == 0xffffffffu) return Status::Corrupt("group: too many frames");
-  const auto where = [&] { return "frame " + std::to_string(frame_count_) + ": "; };
-  RangeDecoder range(payload);
-  bool intra = false;
-  const Status s = ParseFrame(ChainSlot(index), range, *open_group_, intra);
-  if (!s.ok()) return {s.code(), where() + s.message()};
-  if (!range.AtEnd()) return Status::Corrupt(where() + "bytes after its end");
-  group_.assign(1, open_group_->predictor().frames().back());
-  group_intra_.assign(1, intra);
-  next_in_group_ = 0;
+  if (!parser_ || !parser_->is_open()) return Status::Ok();  // of a group that has been given up
+  CodedFrames frames;
+  Status status = parser_->ParseNext(payload, frames);
+  if (status.ok()) {
+    next_out_ = frames.first;
+    next_frame_ = frames.end();
+    status = source_->Take(std::move(frames), std::exchange(group_begins_, false));
+  }
+  if (status.ok() || !settings.skip_damage) return status;
+  parser_->Close();
   return Status::Ok();
 }
 
-Status Decoder::Impl::TakeEnd(std::span<const std::uint8_t> payload) {
-  ByteReader reader(payload);
-  const std::uint32_t frames = reader.Varint();
-  if (!reader.ok() || reader.remaining() != 0) return Status::Corrupt("end: wrong length");
-  if (frames != frame_count_) {
-    return Status::Corrupt("end: " + std::to_string(frames) + " frames declared, " + std::to_string(frame_count_) +
-                           " found");
+Status Decoder::Impl::TakeEnd(std::span<const std::uint8_t> payload, std::uint64_t begin) {
+  if (!mesh) return settings.skip_damage ? Status::Ok() : Status::Corrupt("the end before the I-frame");
+  EndSyntax end;
+  Status status = ParseEnd(payload, end);
+  if (status.ok() && next_frame_ && *next_frame_ != end.frames) {
+    if (settings.skip_damage && end.frames > *next_frame_) {
+      lost.Add(static_cast<std::uint32_t>(*next_frame_), end.frames);
+    } else {
+      status = Status::Corrupt("end: " + std::to_string(end.frames) + " frames declared, " +
+                               std::to_string(*next_frame_) + " found");
+    }
   }
+  if (status.ok() && end.index && from_start_ && !lost.any() && !places_.Matches(*end.index, begin)) {
+    status = Status::Corrupt("end: the index is not the stream's");
+  }
+  if (!status.ok()) return settings.skip_damage ? Status::Ok() : status;
+  total_frames_ = end.frames;
   ended_ = true;
   return Status::Ok();
 }
 
-Status Decoder::Impl::Receive(DecodedFrame& frame) {
-  if (error_) return *error_;
-  if (next_in_group_ == group_.size()) return Status::NeedMoreData();
-  try {
-    return Latch(DecodeFrame(frame));
-  } catch (const std::exception& e) {
-    return Latch(Status::Limit(e.what()));
+Status Decoder::Impl::Receive(Positions& positions, FrameInfo& info) {
+  while (true) {
+    if (error_) return *error_;
+    if (!FrameWaits()) {
+      if (!Replays() && !Salvage()) return Status::NeedMoreData();
+      SAC_RETURN_IF_ERROR(AdvanceReplay());
+      continue;
+    }
+    const auto frame = static_cast<std::uint32_t>(next_out_++);
+    const bool shown = frame >= wanted_ && frame % settings.frame_step == 0;
+    if (!shown && !ReferencesPrevious()) continue;
+    const auto reconstruct = [&] { return source_->Reconstruct(frame, settings.frame_step, positions); };
+    if (const Status status = Guard(reconstruct); !status.ok()) {
+      if (!settings.skip_damage) return status;
+      error_.reset();
+      lost.Add(frame, std::uint64_t{frame} + 1);
+      continue;
+    }
+    if (!shown) continue;
+    Describe(frame, frame, positions, info);
+    return Status::Ok();
   }
 }
 
-Status Decoder::Impl::DecodeFrame(DecodedFrame& out) {
-  out.index = frame_count_;
-  out.intra = group_intra_[next_in_group_];
-  if (!reconstructor_->StartFrame(out.intra)) {
-    return Status::Corrupt("frame " + std::to_string(frame_count_) + ": the reference shape is singular");
+void Decoder::Impl::Describe(std::uint32_t frame, double time, const Positions& positions, FrameInfo& info) const {
+  info.index = frame;
+  info.intra = source_->IsIntra(frame);
+  info.time = header->frame_rate_numerator == 0 ? 0 : time / header->frames_per_second();
+  info.box = BoundingBox(positions);
+}
+
+Status Decoder::Impl::Interpolate(double time, Positions& positions, FrameInfo& info) {
+  if (error_) return *error_;
+  if (!(time >= 0 && time <= 0xfffffffeu)) return Status::InvalidArgument("a time that is no frame's");
+  if (!source_) return Status::NeedMoreData();
+  if (ReferencesPrevious()) return Status::Unsupported("frames measured against the frame before have none between");
+  if (total_frames_.value_or(0) > 0) time = std::min(time, *total_frames_ - 1.0);
+  while (std::ceil(time) >= static_cast<double>(source_->frames().end())) {
+    next_out_ = source_->frames().end();
+    if (!Replays() && !Salvage()) return Status::NeedMoreData();
+    SAC_RETURN_IF_ERROR(AdvanceReplay());
   }
-  const PositionMatrix positions = reconstructor_->Reconstruct(group_[next_in_group_]);
-  if (!(positions.array().abs() <= std::numeric_limits<float>::max()).all()) {
-    return Status::Corrupt("frame " + std::to_string(frame_count_) + ": positions that are not finite");
+  const auto frame = static_cast<std::uint32_t>(time);
+  next_out_ = std::max<std::uint64_t>(next_out_, frame);
+  Status status;
+  try {
+    status = source_->Interpolate(time, positions);
+  } catch (const std::exception& e) {
+    status = Status::Limit(e.what());
   }
-  out.positions = ToPositions(positions);
-  ++next_in_group_;
-  ++frame_count_;
+  if (status.ok()) Describe(frame, time, positions, info);
+  return status;
+}
+
+Status Decoder::Impl::Seek(std::uint32_t frame, std::uint64_t& byte) {
+  if (!source_) return Status::NeedMoreData();
+  if (total_frames_ && frame >= *total_frames_) {
+    return Status::InvalidArgument("frame " + std::to_string(frame) + " of a clip of " +
+                                   std::to_string(*total_frames_) + " frames");
+  }
+  byte = places_.Find(frame);
+  packets_.Restart(byte, false);
+  search_.reset();
+  replay_.clear();
+  replayed_ = 0;
+  position_ = byte;
+  error_.reset();
+  ended_ = finished_ = from_start_ = after_header_ = false;
+  parser_->Close();
+  source_->Clear();
+  next_frame_.reset();
+  next_out_ = wanted_ = frame;
   return Status::Ok();
+}
+
+Status Decoder::Impl::AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed) {
+  StreamIndex index;
+  SAC_RETURN_IF_ERROR(ReadIndex(tail, index, needed));
+  places_.Take(index);
+  total_frames_ = 0;
+  for (const StreamIndex::Group& group : index.groups) *total_frames_ += group.frames;
+  return Status::Ok();
+}
+
+bool Decoder::Impl::Salvage() {
+  if (!finished_ || search_ || ended_) return false;
+  std::vector<std::uint8_t> pending = packets_.TakePending();
+  if (pending.empty()) return false;
+  // The size of the packet may be damaged: then there are others in it.
+  PacketSearch search(settings.limits);
+  std::optional<Packet> found;
+  std::span<const std::uint8_t> rest = std::span(pending).subspan(1);
+  search.Read(rest, found);
+  if (found) {
+    search_.emplace(settings.limits);
+    position_ -= pending.size() - 1;
+    reread_ += pending.size() - 1;
+    replay_ = std::move(pending);
+    replayed_ = 1;
+    return true;
+  }
+  if (parser_ && !parser_->is_open()) TakeCutGroup(pending);
+  return FrameWaits();
+}
+
+void Decoder::Impl::TakeCutGroup(std::span<const std::uint8_t> packet) {
+  ByteReader reader(packet);
+  const std::uint32_t tag = reader.Varint();
+  if (!reader.ok() || static_cast<PacketType>(tag & 3) != PacketType::kGroup) return;
+  GroupSyntax group;
+  std::span<const std::uint8_t> code;
+  CodedFrames frames;
+  if (!ParseGroup(packet.subspan(reader.position()), group, code).ok() || group.open()) return;
+  if (!ContinueAt(group.first_frame).ok() || !parser_->ParseCut(group, code, frames).ok()) return;
+  while (!frames.frames.back().whole) frames.frames.pop_back();
+  next_frame_ = std::uint64_t{group.first_frame} + group.frames;
+  lost.Add(frames.end(), *next_frame_);
+  if (source_->Take(std::move(frames), true).ok()) next_out_ = group.first_frame;
 }
 
 Status Decoder::Impl::Finish() {
   if (error_) return *error_;
-  if (!ended_ || next_in_group_ < group_.size()) {
-    return Latch(Truncated(packets_.position(), frame_count_));
-  }
-  return Status::Ok();
+  const auto truncated = [this] { return Truncated(position_, next_frame_.value_or(0)); };
+  if (!settings.skip_damage) return ended_ && !FrameWaits() ? Status::Ok() : Latch(truncated());
+  finished_ = true;
+  const Status status = Guard([this] {
+    while (!FrameWaits() && (Replays() || Salvage())) SAC_RETURN_IF_ERROR(AdvanceReplay());
+    return Status::Ok();
+  });
+  if (!status.ok()) return status;
+  return ended_ || FrameWaits() ? Status::Ok() : truncated();
 }
 
 Decoder::Decoder(const DecoderSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
@@ -269,10 +491,43 @@ Decoder::Decoder(Decoder&&) noexcept = default;
 Decoder& Decoder::operator=(Decoder&&) noexcept = default;
 
 Status Decoder::Send(std::span<const std::uint8_t>& bytes) { return impl_->Send(bytes); }
-Status Decoder::Receive(DecodedFrame& frame) { return impl_->Receive(frame); }
+Status Decoder::Receive(DecodedFrame& frame) { return impl_->Receive(frame.positions, frame); }
+Status Decoder::Interpolate(double time, DecodedFrame& frame) {
+  return impl_->Interpolate(time, frame.positions, frame);
+}
 Status Decoder::Finish() { return impl_->Finish(); }
+Status Decoder::Seek(std::uint32_t frame, std::uint64_t& byte) { return impl_->Seek(frame, byte); }
+Status Decoder::AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed) {
+  return impl_->AddIndex(tail, needed);
+}
+void Decoder::Reset() { impl_ = std::make_unique<Impl>(impl_->settings); }
 const SequenceHeader* Decoder::header() const { return impl_->header ? &*impl_->header : nullptr; }
 const Mesh* Decoder::mesh() const { return impl_->mesh ? &*impl_->mesh : nullptr; }
 const std::vector<std::uint32_t>& Decoder::order() const { return impl_->order; }
+const std::vector<FrameRange>& Decoder::lost_frames() const { return impl_->lost.ranges(); }
+
+Status Decoder::Receive(const FrameBuffers& buffers, FrameInfo& info) {
+  if (mesh()) SAC_RETURN_IF_ERROR(CheckBuffers(buffers, mesh()->positions.size()));
+  Positions positions;
+  SAC_RETURN_IF_ERROR(impl_->Receive(positions, info));
+  FillBuffers(positions, mesh()->triangles, info.box, buffers);
+  return Status::Ok();
+}
+
+Status Decoder::Interpolate(double time, const FrameBuffers& buffers, FrameInfo& info) {
+  if (mesh()) SAC_RETURN_IF_ERROR(CheckBuffers(buffers, mesh()->positions.size()));
+  Positions positions;
+  SAC_RETURN_IF_ERROR(impl_->Interpolate(time, positions, info));
+  FillBuffers(positions, mesh()->triangles, info.box, buffers);
+  return Status::Ok();
+}
+
+Status Decoder::SeekTime(double seconds, std::uint64_t& byte) {
+  if (!header()) return Status::NeedMoreData();
+  if (header()->frame_rate_numerator == 0) return Status::InvalidArgument("the stream has no frame rate");
+  const double frame = std::floor(seconds * header()->frames_per_second() + 1e-9);
+  if (!(frame >= 0 && frame <= 0xffffffffu)) return Status::InvalidArgument("a time that is no frame's");
+  return Seek(static_cast<std::uint32_t>(frame), byte);
+}
 
 }  // namespace sac

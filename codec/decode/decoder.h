@@ -5,6 +5,9 @@
 #include <span>
 #include <vector>
 
+#include "codec/bounding_box.h"
+#include "codec/decode/lost_frames.h"
+#include "codec/decode/vertex_buffer.h"
 #include "codec/mesh.h"
 #include "format/limits.h"
 #include "format/sequence_header.h"
@@ -14,12 +17,24 @@ namespace sac {
 
 struct DecoderSettings {
   Limits limits;
+  // Goes on after damage, at the next group that is sound; a stream may then also be entered anywhere. What is lost,
+  // lost_frames() tells. Without it any error is final.
+  bool skip_damage = false;
+  // Receive() gives the frames whose number is a multiple of this, at a fraction of the work.
+  std::uint32_t frame_step = 1;
+  // Threads that reconstruct frames of a group; they live as long as a call. 1: the caller's alone.
+  unsigned threads = 1;
 };
 
-struct DecodedFrame {
+struct FrameInfo {
   std::uint32_t index = 0;  // in the clip, from 0
   bool intra = false;       // needed no other frame
-  Positions positions;      // in the vertex order of the decoder's mesh, model units
+  double time = 0;          // seconds from the clip's begin; 0 when the stream has no frame rate
+  Box box;                  // of the positions, model units
+};
+
+struct DecodedFrame : FrameInfo {
+  Positions positions;  // in the vertex order of the decoder's mesh, model units
 };
 
 // Turns a stream into frames. The bytes may come in any chunking:
@@ -35,9 +50,10 @@ struct DecodedFrame {
 //     }
 //   }
 //   status = decoder.Finish();
+//   while (decoder.Receive(frame).ok()) Show(decoder.mesh(), frame);    // only with skip_damage
 //
-// Memory holds the mesh, its basis and one packet, whatever the length of the clip. An error is final. A decoder is
-// used by one thread at a time; decoders share nothing.
+// Memory holds the mesh, its basis, one packet and a group's coefficients, whatever the length of the clip; only the
+// places of its groups add 16 bytes each. A decoder is used by one thread at a time; decoders share nothing.
 class Decoder {
  public:
   explicit Decoder(const DecoderSettings& settings = {});
@@ -51,15 +67,44 @@ class Decoder {
 
   // Decodes the next frame. kNeedMoreData when none is ready.
   Status Receive(DecodedFrame& frame);
+  // Likewise into the caller's memory, such as a mapped buffer of a GPU. kInvalidArgument, and the frame still waits,
+  // when a buffer is too small.
+  Status Receive(const FrameBuffers& buffers, FrameInfo& info);
 
-  // Declares the end of the bytes: kCorrupt when the stream is not complete.
+  // Declares the end of the bytes: kCorrupt when the stream is not complete. With skip_damage, more frames may be ready
+  // to be received afterwards: those of a packet whose size was damaged, or of a group that is cut off.
   Status Finish();
+
+  // Goes to `frame`, which the next Receive() gives: it sets `byte`, and the next bytes sent must be those of the
+  // stream from there on. Without an index this is the last group that is known to begin before, and groups are passed
+  // over from there, without decoding them. A clip is played again by Seek(0). kNeedMoreData before the I-frame has
+  // been sent; kInvalidArgument when the clip is known to end before. An error of the stream's damage ends here.
+  Status Seek(std::uint32_t frame, std::uint64_t& byte);
+  // Likewise to the frame that is shown at so many seconds. kInvalidArgument when the stream has no frame rate.
+  Status SeekTime(double seconds, std::uint64_t& byte);
+
+  // Makes Seek() know where all groups begin, from the last bytes of the stream. kNeedMoreData when there are too few:
+  // `needed` says how many it takes, kStreamTail (8) at first. kInvalidArgument when the stream has no index; so it is,
+  // too, when `needed` comes to be more than the stream has.
+  Status AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed);
+
+  // The shape at a time between frames, in frames from the clip's begin: coefficients are averaged, not positions, so
+  // that what turns keeps its size. Frames before `time` count as received; go on with later times, or Seek().
+  // kNeedMoreData when the frame after `time` has not been sent; kInvalidArgument when the one before is gone or lost;
+  // kUnsupported when frames are measured against the frame before.
+  Status Interpolate(double time, DecodedFrame& frame);
+  Status Interpolate(double time, const FrameBuffers& buffers, FrameInfo& info);
+
+  // Forgets everything but the settings: another stream may begin.
+  void Reset();
 
   // The sequence header and the first frame's mesh with its static attributes; null before they have been decoded.
   const SequenceHeader* header() const;
   const Mesh* mesh() const;
   // Per vertex its index in the input; empty when the stream does not keep the order.
   const std::vector<std::uint32_t>& order() const;
+  // The frames that damage has cost so far, ascending, with skip_damage.
+  const std::vector<FrameRange>& lost_frames() const;
 
  private:
   class Impl;

@@ -14,10 +14,10 @@
 #include "codec/encode/i_frame_encoder.h"
 #include "codec/encode/position_grid.h"
 #include "codec/encode/quality.h"
+#include "codec/encode/stream_writer.h"
 #include "codec/shape.h"
 #include "format/frame_coder.h"
 #include "format/group_structure.h"
-#include "format/packet.h"
 
 namespace sac {
 namespace {
@@ -137,16 +137,11 @@ class Encoder::Impl {
   Status Send(std::span<const Vec3f> positions);
   Status Finish();
 
-  std::vector<std::uint8_t> bytes;
+  std::optional<StreamWriter> writer;
   std::vector<std::uint32_t> order;
   SequenceHeader header;
-  StreamBytes stream_bytes;
 
  private:
-  void Append(PacketType type, std::span<const std::uint8_t> payload, double StreamBytes::*part);
-  void Append(std::span<const std::uint8_t> more, double StreamBytes::*part);
-  // Whole bytes for the planes of what was appended last, the rest stays side information.
-  void Account(const FrameBits& bits, double side_before);
   bool IsFull(std::uint32_t frames) const;
   Status FlushGroup();
   // Low delay.
@@ -157,11 +152,9 @@ class Encoder::Impl {
   Shape shape_;
   std::unique_ptr<GroupEncoder> encoder_;
   std::vector<PositionMatrix> group_;  // frames that wait for the group to be full
-  std::uint32_t frame_count_ = 0;
   bool finished_ = false;
 
   // The open group, with low delay.
-  RecordWriter records_;
   std::optional<FrameCoder<RangeEncoder>> coder_;
   std::uint32_t open_frames_ = 0;
   Status failure_;  // half a frame has been coded
@@ -220,28 +213,9 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   syntax.fingerprint = shape_.basis.Fingerprint();
   encoder_ = std::make_unique<GroupEncoder>(shape_, header, settings.max_error.value_or(0));
 
-  bytes.assign(std::begin(kMagic), std::end(kMagic));
-  stream_bytes.header += 4;
-  Append(PacketType::kHeader, WriteSequenceHeader(header), &StreamBytes::header);
-  Append(PacketType::kIFrame, WriteIFrame(syntax, header), &StreamBytes::i_frame);
+  writer.emplace(settings.index, settings.repeat_start);
+  writer->Start(WriteSequenceHeader(header), WriteIFrame(syntax, header));
   return Status::Ok();
-}
-
-void Encoder::Impl::Append(PacketType type, std::span<const std::uint8_t> payload, double StreamBytes::*part) {
-  Append(WritePacket(type, payload), part);
-}
-
-void Encoder::Impl::Append(std::span<const std::uint8_t> more, double StreamBytes::*part) {
-  bytes.insert(bytes.end(), more.begin(), more.end());
-  stream_bytes.*part += static_cast<double>(more.size());
-}
-
-void Encoder::Impl::Account(const FrameBits& bits, double side_before) {
-  for (std::size_t p = 0; p < kPlanes; ++p) {
-    const double plane = std::min(std::round(bits.planes[p] / 8), stream_bytes.side - side_before);
-    stream_bytes.side -= plane;
-    stream_bytes.planes[p] += plane;
-  }
 }
 
 Status Encoder::Impl::Send(std::span<const Vec3f> positions) {
@@ -258,7 +232,6 @@ Status Encoder::Impl::Send(std::span<const Vec3f> positions) {
     ordered.row(static_cast<Eigen::Index>(v)) << static_cast<double>(p[0]), static_cast<double>(p[1]),
         static_cast<double>(p[2]);
   }
-  ++frame_count_;
   if (settings_.low_delay) return failure_ = SendNow(std::move(ordered));
   group_.push_back(std::move(ordered));
   return IsFull(static_cast<std::uint32_t>(group_.size())) ? FlushGroup() : Status::Ok();
@@ -271,7 +244,7 @@ bool Encoder::Impl::IsFull(std::uint32_t frames) const {
 
 Status Encoder::Impl::SendNow(PositionMatrix positions) {
   if (open_frames_ == 0) {
-    Append(records_.Open(), &StreamBytes::side);
+    writer->OpenGroup();
     coder_.emplace(header, shape_.layouts);
   }
   FrameSyntax frame;
@@ -281,15 +254,13 @@ Status Encoder::Impl::SendNow(PositionMatrix positions) {
   if (!coder_->Code(range, ChainSlot(open_frames_), frame, &bits)) {
     return Status::InvalidArgument("the motion is too far from the first frame for these steps");
   }
-  const double before = stream_bytes.side;
-  Append(records_.Frame(range.Finish()), &StreamBytes::side);
-  Account(bits, before);
+  writer->Frame(range.Finish(), bits);
   if (IsFull(++open_frames_)) EndOpenGroup();
   return Status::Ok();
 }
 
 void Encoder::Impl::EndOpenGroup() {
-  if (open_frames_ > 0) Append(records_.End(), &StreamBytes::side);
+  if (open_frames_ > 0) writer->CloseGroup();
   open_frames_ = 0;
 }
 
@@ -308,13 +279,7 @@ Status Encoder::Impl::FlushGroup() {
     }
   }
 
-  ByteWriter payload;
-  payload.Varint(frames);
-  payload.Varint(pyramid);
-  payload.Bytes(range.Finish());
-  const double before = stream_bytes.side;
-  Append(PacketType::kGroup, payload.bytes(), &StreamBytes::side);
-  Account(bits, before);
+  writer->Group({frames, writer->frames(), pyramid}, range.Finish(), bits);
   group_.clear();
   return Status::Ok();
 }
@@ -324,9 +289,7 @@ Status Encoder::Impl::Finish() {
   SAC_RETURN_IF_ERROR(failure_);
   EndOpenGroup();
   if (!group_.empty()) SAC_RETURN_IF_ERROR(FlushGroup());
-  ByteWriter payload;
-  payload.Varint(frame_count_);
-  Append(PacketType::kEnd, payload.bytes(), &StreamBytes::header);
+  writer->End();
   finished_ = true;
   return Status::Ok();
 }
@@ -343,9 +306,9 @@ Status Encoder::Create(const Mesh& first_frame, const EncoderSettings& settings,
 
 Status Encoder::Send(std::span<const Vec3f> positions) { return impl_->Send(positions); }
 Status Encoder::Finish() { return impl_->Finish(); }
-std::vector<std::uint8_t> Encoder::TakeBytes() { return std::exchange(impl_->bytes, {}); }
+std::vector<std::uint8_t> Encoder::TakeBytes() { return impl_->writer->TakeBytes(); }
 const std::vector<std::uint32_t>& Encoder::order() const { return impl_->order; }
 const SequenceHeader& Encoder::header() const { return impl_->header; }
-const StreamBytes& Encoder::stream_bytes() const { return impl_->stream_bytes; }
+const StreamBytes& Encoder::stream_bytes() const { return impl_->writer->sizes(); }
 
 }  // namespace sac

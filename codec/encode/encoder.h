@@ -33,11 +33,14 @@ struct EncoderSettings {
   std::uint32_t frame_rate_numerator = 0;  // frames per second; 0: unknown
   std::uint32_t frame_rate_denominator = 1;
   bool keep_order = false;  // put the input's vertex order in the stream
+  bool index = true;        // end streams of several groups with where they begin
+  // Header and I-frame come again before every so many groups, for those who join in the middle; 0: never.
+  std::uint32_t repeat_start = 0;
 };
 
 // Bytes by what they say; they add up to the stream.
 struct StreamBytes {
-  double header = 0;  // magic, sequence header, end
+  double header = 0;  // magic, sequence header, end and index
   double i_frame = 0;
   std::array<double, kPlanes> planes = {};
   double side = 0;  // rigid motion, frame types, packet framing of groups

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "codec/encode/bounding_box.h"
+#include "codec/bounding_box.h"
 
 namespace sac {
 namespace {

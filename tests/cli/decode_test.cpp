@@ -161,6 +161,37 @@ TEST_F(DecodeTest, IntoAPipe) {
   EXPECT_EQ(Read("got.mdd"), Read("part.mdd"));
 }
 
+TEST_F(DecodeTest, DamageCanBeSkipped) {
+  Encode("clip.sac", {"--group", "4"});
+  Good({"decode", "clip.sac", "-o", "good.pc2"});
+  const std::vector<Positions> good = LoadCache("good.pc2");
+  // The last byte of each group's packet is of its CRC.
+  std::size_t end = 4, group = 0;
+  for (const auto& packet : GoodJson({"info", "clip.sac", "--json"})["packets"]) {
+    end += packet["bytes"].get<std::size_t>();
+    if (packet["type"] != "group") continue;
+    std::string damaged = Read("clip.sac");
+    damaged[end - 1] = static_cast<char>(damaged[end - 1] ^ 1);
+    directory_.Write("damaged.sac", damaged);
+    const std::size_t first = 4 * group++;
+    const Outcome outcome = Sac({"decode", "damaged.sac", "-o", "out.pc2", "--skip-damage"});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_NE(outcome.err.find("damaged.sac: frames " + std::to_string(first) + " to " + std::to_string(first + 3) +
+                               " are lost"),
+              std::string::npos)
+        << outcome.err;
+    std::vector<Positions> expected = good;
+    for (std::size_t f = first; f < first + 4; ++f) expected[f] = good[first == 0 ? 4 : first - 1];
+    EXPECT_EQ(LoadCache("out.pc2"), expected) << first;
+    EXPECT_EQ(Sac({"decode", "damaged.sac", "-o", "out.pc2"}).code, 1);
+  }
+  EXPECT_EQ(group, 3u);
+  const std::string stream = Read("clip.sac");
+  directory_.Write("cut.sac", stream.substr(0, stream.size() * 9 / 10));
+  EXPECT_EQ(Sac({"decode", "cut.sac", "-o", "cut.pc2", "--skip-damage"}).code, 0);
+  EXPECT_GE(LoadCache("cut.pc2").size(), 8u);
+}
+
 TEST_F(DecodeTest, BadStreams) {
   Encode("clip.sac");
   const std::string stream = Read("clip.sac");

@@ -56,7 +56,7 @@ TEST_F(ReportTest, InfoOfDamagedStreams) {
   Encode("clip.sac");
   const nlohmann::json whole = GoodJson({"info", "clip.sac", "--json"});
   const std::string stream = Read("clip.sac");
-  directory_.Write("short.sac", stream.substr(0, stream.size() - 10));
+  directory_.Write("short.sac", stream.substr(0, stream.size() - 30));
   Outcome outcome = Sac({"info", "short.sac", "--json"});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_EQ(outcome.err, "sac: short.sac: the stream is truncated after frame 10\n");
@@ -66,7 +66,7 @@ TEST_F(ReportTest, InfoOfDamagedStreams) {
   EXPECT_EQ(info["header"], whole["header"]);
   EXPECT_EQ(info["frames"], 10);
   EXPECT_EQ(info["packets"].size(), 4u);
-  EXPECT_EQ(info["bytes"], stream.size() - 10);
+  EXPECT_EQ(info["bytes"], stream.size() - 30);
   outcome = Sac({"info", "short.sac"});
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.out.find("\nframes                   10\n"), std::string::npos);

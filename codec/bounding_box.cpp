@@ -1,4 +1,4 @@
-#include "codec/encode/bounding_box.h"
+#include "codec/bounding_box.h"
 
 #include <algorithm>
 #include <cstddef>

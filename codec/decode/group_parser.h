@@ -1,0 +1,64 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "codec/shape.h"
+#include "format/frame_coder.h"
+#include "format/group_syntax.h"
+#include "format/limits.h"
+#include "format/sequence_header.h"
+#include "format/status.h"
+
+namespace sac {
+
+// Frames that follow each other in time, as coefficients.
+struct CodedFrames {
+  struct Frame {
+    FrameCoefficients coefficients;
+    bool intra = false;  // predicted from no other frame
+    bool whole = true;   // false: its bytes are missing
+  };
+
+  std::uint32_t first = 0;  // the number of frames[0] in the clip
+  std::vector<Frame> frames;
+
+  std::uint64_t end() const { return std::uint64_t{first} + frames.size(); }
+};
+
+// Reads the frames of groups (spec.md 6.2, 6.3): bytes to integers.
+class GroupParser {
+ public:
+  GroupParser(const SequenceHeader& header, const PlaneLayouts& layouts, const Limits& limits)
+      : header_(header), layouts_(layouts), limits_(limits) {}
+
+  // A whole group. kCorrupt, with the frame's number; kLimit.
+  Status Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, CodedFrames& out) const;
+  // A group whose code is cut off: the frames whose bytes are all there, the others not whole. kCorrupt when there are
+  // none.
+  Status ParseCut(const GroupSyntax& group, std::span<const std::uint8_t> code, CodedFrames& out) const;
+
+  // An open group begins; its frames come one by one.
+  void Open(std::uint32_t first_frame);
+  Status ParseNext(std::span<const std::uint8_t> code, CodedFrames& out);
+  void Close() { open_.reset(); }
+  bool is_open() const { return open_.has_value(); }
+
+ private:
+  bool ReferencesPrevious() const {
+    return header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious);
+  }
+  Status CheckSize(std::uint32_t frames) const;
+  Status ParseFrame(const FrameSlot& slot, RangeDecoder& range, FrameCoder<RangeDecoder>& coder, bool& intra) const;
+  Status Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, bool cut, CodedFrames& out) const;
+
+  const SequenceHeader& header_;
+  const PlaneLayouts& layouts_;
+  const Limits& limits_;
+  std::optional<FrameCoder<RangeDecoder>> open_;
+  std::uint32_t open_first_ = 0;
+};
+
+}  // namespace sac

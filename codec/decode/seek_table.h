@@ -1,0 +1,61 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstdint>
+#include <iterator>
+#include <vector>
+
+#include "format/stream_index.h"
+
+namespace sac {
+
+// Where groups begin, as far as known.
+class SeekTable {
+ public:
+  // The end of the I-frame: no group begins before.
+  void Start(std::uint64_t byte) { start_ = byte; }
+
+  void Add(std::uint64_t byte, std::uint32_t first_frame) {
+    const auto at = std::ranges::lower_bound(places_, byte, {}, &Place::byte);
+    if (at == places_.end() || at->byte != byte) places_.insert(at, {byte, first_frame});
+  }
+
+  // All of them.
+  void Take(const StreamIndex& index) {
+    places_.clear();
+    std::uint64_t byte = index.first_group;
+    std::uint32_t frame = 0;
+    for (const StreamIndex::Group& group : index.groups) {
+      places_.push_back({byte, frame});
+      byte += group.bytes;
+      frame += group.frames;
+    }
+  }
+
+  // Where to read on for `frame`: the last known group that begins with it or before.
+  std::uint64_t Find(std::uint32_t frame) const {
+    const auto at = std::ranges::upper_bound(places_, frame, {}, &Place::first_frame);
+    return at == places_.begin() ? start_ : std::prev(at)->byte;
+  }
+
+  // Whether `index` says the same of a stream whose end packet begins at `end`.
+  bool Matches(const StreamIndex& index, std::uint64_t end) const {
+    SeekTable other;
+    other.Take(index);
+    std::uint64_t byte = index.first_group;
+    for (const StreamIndex::Group& group : index.groups) byte += group.bytes;
+    return byte == end && places_ == other.places_;
+  }
+
+ private:
+  struct Place {
+    std::uint64_t byte;
+    std::uint32_t first_frame;
+    bool operator==(const Place&) const = default;
+  };
+  std::uint64_t start_ = 0;
+  std::vector<Place> places_;  // ascending
+};
+
+}  // namespace sac

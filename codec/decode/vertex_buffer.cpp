@@ -1,0 +1,92 @@
+#include "codec/decode/vertex_buffer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <string>
+
+namespace sac {
+namespace {
+
+std::size_t BytesOf(VertexFormat format) { return format == VertexFormat::kFloat32 ? 12 : 6; }
+
+Status Check(const VertexBuffer& buffer, std::size_t vertices, const char* name) {
+  if (buffer.data == nullptr || vertices == 0) return Status::Ok();
+  const std::size_t vertex = BytesOf(buffer.format);
+  if (buffer.stride < vertex) {
+    return Status::InvalidArgument(std::string(name) + ": a stride of " + std::to_string(buffer.stride) +
+                                   " bytes, a vertex has " + std::to_string(vertex));
+  }
+  if (buffer.size < vertex || (buffer.size - vertex) / buffer.stride < vertices - 1) {
+    return Status::InvalidArgument(std::string(name) + ": a buffer of " + std::to_string(buffer.size) +
+                                   " bytes does not hold " + std::to_string(vertices) + " vertices");
+  }
+  return Status::Ok();
+}
+
+// `to_int16` turns a component on an axis into 16 bits.
+template <class ToInt16>
+void Fill(const std::vector<Vec3f>& values, const VertexBuffer& buffer, ToInt16&& to_int16) {
+  auto* out = static_cast<unsigned char*>(buffer.data);
+  for (std::size_t v = 0; v < values.size(); ++v) {
+    unsigned char* const vertex = out + v * buffer.stride;
+    if (buffer.format == VertexFormat::kFloat32) {
+      std::memcpy(vertex, values[v].data(), 12);
+      continue;
+    }
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto x = static_cast<std::uint16_t>(to_int16(static_cast<double>(values[v][a]), a));
+      std::memcpy(vertex + 2 * a, &x, 2);
+    }
+  }
+}
+
+}  // namespace
+
+Status CheckBuffers(const FrameBuffers& buffers, std::size_t vertices) {
+  SAC_RETURN_IF_ERROR(Check(buffers.positions, vertices, "positions"));
+  return Check(buffers.normals, vertices, "normals");
+}
+
+void FillBuffers(const Positions& positions, const std::vector<Triangle>& triangles, const Box& box,
+                 const FrameBuffers& buffers) {
+  if (buffers.positions.data != nullptr) {
+    std::array<double, 3> scale;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double size = box.size()[a];
+      scale[a] = size > 0 ? 65535 / size : 0;
+    }
+    Fill(positions, buffers.positions,
+         [&](double x, std::size_t a) { return std::clamp(std::lround((x - box.low[a]) * scale[a]), 0L, 65535L); });
+  }
+  if (buffers.normals.data != nullptr) {
+    Fill(VertexNormals(positions, triangles), buffers.normals,
+         [](double x, std::size_t) { return std::lround(x * 32767); });
+  }
+}
+
+std::vector<Vec3f> VertexNormals(const Positions& positions, const std::vector<Triangle>& triangles) {
+  std::vector<std::array<double, 3>> sums(positions.size());
+  for (const Triangle& t : triangles) {
+    std::array<double, 3> u, w;
+    for (std::size_t a = 0; a < 3; ++a) {
+      const auto origin = static_cast<double>(positions[t[0]][a]);
+      u[a] = static_cast<double>(positions[t[1]][a]) - origin;
+      w[a] = static_cast<double>(positions[t[2]][a]) - origin;
+    }
+    for (std::size_t a = 0; a < 3; ++a) {  // twice the area long
+      const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
+      const double n = u[b] * w[c] - u[c] * w[b];
+      for (const std::uint32_t corner : t) sums[corner][a] += n;
+    }
+  }
+  std::vector<Vec3f> normals(positions.size());
+  for (std::size_t v = 0; v < sums.size(); ++v) {
+    const double length = std::hypot(sums[v][0], sums[v][1], sums[v][2]);
+    if (!(length > 0) || !std::isfinite(length)) continue;
+    for (std::size_t a = 0; a < 3; ++a) normals[v][a] = static_cast<float>(sums[v][a] / length);
+  }
+  return normals;
+}
+
+}  // namespace sac

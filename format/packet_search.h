@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <queue>
+#include <span>
+#include <vector>
+
+#include "format/limits.h"
+#include "format/packet.h"
+
+namespace sac {
+
+// Finds the next packet in bytes whose packets have lost their frame, by damage or by joining in the middle: the first
+// sequence header, group or end packet to be complete, at whatever byte it begins, whose CRC-32 is right. Every byte
+// may begin a packet; the CRCs of all are had from the CRC of the bytes so far, so that time is linear in the bytes.
+class PacketSearch {
+ public:
+  explicit PacketSearch(const Limits& limits);
+
+  // Takes bytes from the front of `bytes` until a packet is complete, which ends the search, or `bytes` is empty.
+  // Holds at most 16 MB; larger packets are not found.
+  void Read(std::span<const std::uint8_t>& bytes, std::optional<Packet>& packet);
+
+ private:
+  struct Candidate {
+    std::uint64_t begin, end;  // bytes of this search
+    std::uint32_t crc_before;  // of the bytes before `begin`
+    bool operator>(const Candidate& other) const { return end > other.end; }
+  };
+  struct Start {
+    std::uint64_t begin;
+    std::uint32_t crc_before;
+  };
+
+  // Whether the bytes from `start` on are a tag; false as long as it is not whole.
+  bool TakeStart(const Start& start);
+  // Forgets bytes that no candidate needs.
+  void Trim();
+
+  std::uint32_t most_payload_;
+  std::vector<std::uint8_t> held_;
+  std::uint64_t held_from_ = 0, position_ = 0;
+  std::uint32_t crc_ = 0;      // of all bytes of this search
+  std::vector<Start> starts_;  // whose tags are not whole yet, at most 5
+  std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates_;
+};
+
+}  // namespace sac

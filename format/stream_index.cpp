@@ -1,0 +1,66 @@
+#include "format/stream_index.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "format/bytes.h"
+#include "format/limits.h"
+#include "format/packet.h"
+
+namespace sac {
+
+std::vector<std::uint8_t> WriteEnd(const EndSyntax& end) {
+  ByteWriter out;
+  out.Varint(end.frames);
+  if (end.index) {
+    out.Varint(end.index->first_group);
+    for (const StreamIndex::Group& group : end.index->groups) {
+      out.Varint(group.bytes);
+      out.Varint(group.frames);
+    }
+    const std::size_t payload = out.size() + 4;
+    out.U32(static_cast<std::uint32_t>(PacketSize(payload)));
+  }
+  return std::move(out.bytes());
+}
+
+Status ParseEnd(std::span<const std::uint8_t> payload, EndSyntax& end) {
+  ByteReader reader(payload);
+  end.frames = reader.Varint();
+  if (!reader.ok()) return Status::Corrupt("end: malformed");
+  if (reader.remaining() == 0) return Status::Ok();
+  StreamIndex& index = end.index.emplace();
+  index.first_group = reader.Varint();
+  std::uint64_t frames = 0;
+  while (reader.ok() && reader.remaining() > 4) {
+    StreamIndex::Group group;
+    group.bytes = reader.Varint();
+    group.frames = reader.Varint();
+    frames += group.frames;
+    index.groups.push_back(group);
+  }
+  const std::uint32_t size = reader.U32();
+  if (!reader.ok() || reader.remaining() != 0) return Status::Corrupt("end: malformed index");
+  if (size != PacketSize(payload.size()) || frames != end.frames) return Status::Corrupt("end: a wrong index");
+  return Status::Ok();
+}
+
+Status ReadIndex(std::span<const std::uint8_t> tail, StreamIndex& index, std::size_t& needed) {
+  const Status none = Status::InvalidArgument("the stream has no index, or is not whole");
+  needed = kStreamTail;
+  if (tail.size() < kStreamTail) return Status::NeedMoreData();
+  ByteReader last(tail.last(kStreamTail));
+  const std::uint32_t size = last.U32();
+  if (size <= kStreamTail || size > PacketSize(Limits{}.packet_bytes)) return none;
+  needed = size;
+  if (tail.size() < size) return Status::NeedMoreData();
+  Packet packet;
+  EndSyntax end;
+  if (!ParsePacket(tail.last(size), packet) || packet.type != PacketType::kEnd) return none;
+  SAC_RETURN_IF_ERROR(ParseEnd(packet.payload, end));
+  if (!end.index) return none;
+  index = std::move(*end.index);
+  return Status::Ok();
+}
+
+}  // namespace sac
