@@ -8,7 +8,7 @@
 
 namespace sac::bench {
 
-inline constexpr std::uint32_t kFrames = 128;  // one group of the default settings
+inline constexpr std::uint32_t kFrames = 256;  // two groups of the default settings
 
 // A synthetic walker and its stream at the default settings.
 struct Clip {

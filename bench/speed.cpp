@@ -131,6 +131,42 @@ void DecodeFrames(benchmark::State& state) {
   CountVertices(state, clip);
 }
 
+// Any frame of the clip, from the request to its positions: its group is read, and the one frame reconstructed. The
+// last frame of a group takes longest, since models adapt through all before it.
+void SeekAnywhere(benchmark::State& state) {
+  const Clip& clip = WalkerClip(Vertices(state));
+  Decoder decoder;
+  DecodedFrame frame;
+  std::span<const std::uint8_t> bytes = clip.stream;
+  while (decoder.mesh() == nullptr) Require(decoder.Send(bytes));
+  std::uint32_t wanted = 0;
+  for ([[maybe_unused]] auto step : state) {
+    wanted = (wanted + 131) % kFrames;  // of groups of 128, another one each time
+    std::uint64_t byte = 0;
+    Require(decoder.Seek(wanted, byte));
+    bytes = std::span(clip.stream).subspan(byte);
+    while (!decoder.Receive(frame).ok()) Require(decoder.Send(bytes));
+  }
+  CountVertices(state, clip);
+}
+
+// Likewise within the group that was read last, as when a user scrubs.
+void SeekInGroup(benchmark::State& state) {
+  const Clip& clip = WalkerClip(Vertices(state));
+  Decoder decoder;
+  DecodedFrame frame;
+  std::span<const std::uint8_t> bytes = clip.stream;
+  std::uint64_t byte = 0;
+  while (!decoder.Receive(frame).ok()) Require(decoder.Send(bytes));
+  std::uint32_t wanted = 0;
+  for ([[maybe_unused]] auto step : state) {
+    wanted = (wanted + 37) % 128;
+    Require(decoder.Seek(wanted, byte));
+    Require(decoder.Receive(frame));
+  }
+  CountVertices(state, clip);
+}
+
 void StartEncoder(benchmark::State& state) {
   const Clip& clip = WalkerClip(Vertices(state));
   for ([[maybe_unused]] auto step : state) {
@@ -171,6 +207,8 @@ BENCHMARK(StartMesh)->Apply(Sizes);
 BENCHMARK(StartHarmonics)->Apply(Sizes);
 BENCHMARK(StartFactorization)->Apply(Sizes);
 BENCHMARK(DecodeFrames)->Apply(Sizes);
+BENCHMARK(SeekAnywhere)->Apply(Sizes);
+BENCHMARK(SeekInGroup)->Apply(Sizes);
 BENCHMARK(StartEncoder)->Apply(Sizes);
 BENCHMARK(EncodeFrames)->Apply(Sizes);
 

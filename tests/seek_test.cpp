@@ -83,6 +83,36 @@ TEST(Seek, GivesWhatStraightDecodingGives) {
   }
 }
 
+// A group that was read last is not parsed again; but other bytes in its place are.
+TEST(Seek, WithinAGroup) {
+  for (const ReferenceShape reference : {ReferenceShape::kKey, ReferenceShape::kPrevious}) {
+    EncoderSettings settings = Grouped();
+    settings.reference_shape = reference;
+    const Bytes stream = Encode(BendingClip(kFrames), settings).bytes;
+    const Decoded whole = Decode(stream);
+    Decoder decoder;
+    std::uint64_t byte = 0;
+    ReadOn(decoder, stream, 0, 8);
+    for (const std::uint32_t wanted : {9u, 5u, 8u, 6u}) {  // of the second group
+      ASSERT_TRUE(decoder.Seek(wanted, byte).ok());
+      const std::vector<DecodedFrame> frames = ReadOn(decoder, stream, byte, 1);
+      ASSERT_EQ(frames.size(), 1u);
+      EXPECT_EQ(frames[0].index, wanted);
+      ExpectNear(frames[0].positions, whole.frames[wanted].positions);
+    }
+    ASSERT_TRUE(decoder.Seek(6, byte).ok());
+    std::vector<Packet> packets = Packets(stream);
+    packets[3].payload = packets[2].payload;  // the first group again
+    const Bytes other = Join(packets);
+    for (std::span<const std::uint8_t> rest = std::span(other).subspan(byte); !rest.empty();) {
+      if (!decoder.Send(rest).ok()) break;
+      DecodedFrame frame;
+      if (!decoder.Receive(frame).ok()) continue;
+      EXPECT_NE(frame.index, 6u);
+    }
+  }
+}
+
 TEST(Seek, NeedsNoIndex) {
   EncoderSettings settings = Grouped();
   settings.index = false;

@@ -109,6 +109,14 @@ class Decoder::Impl {
   std::optional<GroupParser> parser_;
   std::optional<FrameSource> source_;
   bool group_begins_ = false;
+  // The packet whose frames source_ has.
+  struct HeldGroup {
+    std::uint64_t begin;
+    std::size_t size;
+    std::uint32_t crc;
+    bool operator==(const HeldGroup&) const = default;
+  };
+  std::optional<HeldGroup> held_;
 
   std::optional<std::uint64_t> next_frame_ = 0;  // that the stream has; none after Seek()
   std::uint64_t next_out_ = 0;                   // of those in source_
@@ -307,14 +315,20 @@ Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload, std::uint
   const std::uint64_t end = std::uint64_t{group.first_frame} + group.frames;
   next_frame_ = end;
   if (end <= wanted_) return Status::Ok();
-  status = parser_->Parse(group, code, frames);
-  if (status.ok()) status = source_->Take(std::move(frames), true);
-  if (!status.ok() && settings.skip_damage) {
-    lost.Add(group.first_frame, end);
-    return Status::Ok();
+  const HeldGroup sent{begin, payload.size(), Crc32(payload)};
+  if (held_ != sent) {  // else it has been sought again
+    held_.reset();
+    status = parser_->Parse(group, code, frames);
+    if (status.ok()) status = source_->Take(std::move(frames), true);
+    if (!status.ok() && settings.skip_damage) {
+      lost.Add(group.first_frame, end);
+      return Status::Ok();
+    }
+    SAC_RETURN_IF_ERROR(status);
+    held_ = sent;
   }
   next_out_ = group.first_frame;
-  return status;
+  return Status::Ok();
 }
 
 Status Decoder::Impl::TakeFrame(std::span<const std::uint8_t> payload) {
@@ -324,6 +338,7 @@ Status Decoder::Impl::TakeFrame(std::span<const std::uint8_t> payload) {
   if (status.ok()) {
     next_out_ = frames.first;
     next_frame_ = frames.end();
+    held_.reset();
     status = source_->Take(std::move(frames), std::exchange(group_begins_, false));
   }
   if (status.ok() || !settings.skip_damage) return status;
@@ -389,12 +404,15 @@ Status Decoder::Impl::Interpolate(double time, Positions& positions, FrameInfo& 
   if (!source_) return Status::NeedMoreData();
   if (ReferencesPrevious()) return Status::Unsupported("frames measured against the frame before have none between");
   if (total_frames_.value_or(0) > 0) time = std::min(time, *total_frames_ - 1.0);
-  while (std::ceil(time) >= static_cast<double>(source_->frames().end())) {
+  const auto frame = static_cast<std::uint32_t>(time), after = static_cast<std::uint32_t>(std::ceil(time));
+  while (!source_->Holds(frame) || !source_->Holds(after)) {
+    if (next_frame_ && after < *next_frame_) {
+      return Status::InvalidArgument("frame " + std::to_string(frame) + " or the next is gone");
+    }
     next_out_ = source_->frames().end();
     if (!Replays() && !Salvage()) return Status::NeedMoreData();
     SAC_RETURN_IF_ERROR(AdvanceReplay());
   }
-  const auto frame = static_cast<std::uint32_t>(time);
   next_out_ = std::max<std::uint64_t>(next_out_, frame);
   Status status;
   try {
@@ -421,9 +439,9 @@ Status Decoder::Impl::Seek(std::uint32_t frame, std::uint64_t& byte) {
   error_.reset();
   ended_ = finished_ = from_start_ = after_header_ = false;
   parser_->Close();
-  source_->Clear();
   next_frame_.reset();
-  next_out_ = wanted_ = frame;
+  next_out_ = source_->frames().end();  // none waits
+  wanted_ = frame;
   return Status::Ok();
 }
 
@@ -468,6 +486,7 @@ void Decoder::Impl::TakeCutGroup(std::span<const std::uint8_t> packet) {
   if (!ContinueAt(group.first_frame).ok() || !parser_->ParseCut(group, code, frames).ok()) return;
   while (!frames.frames.back().whole) frames.frames.pop_back();
   next_frame_ = std::uint64_t{group.first_frame} + group.frames;
+  held_.reset();
   lost.Add(frames.end(), *next_frame_);
   if (source_->Take(std::move(frames), true).ok()) next_out_ = group.first_frame;
 }

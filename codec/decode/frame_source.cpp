@@ -49,12 +49,6 @@ Status FrameSource::Take(CodedFrames frames, bool starts_group) {
   return Status::Ok();
 }
 
-void FrameSource::Clear() {
-  now_ = {};
-  before_.reset();
-  ready_.clear();
-}
-
 const CodedFrames::Frame* FrameSource::Find(std::uint32_t frame) const {
   if (before_ && std::uint64_t{frame} + 1 == now_.first) return &*before_;
   if (frame < now_.first || frame >= now_.end()) return nullptr;
@@ -115,8 +109,8 @@ Status FrameSource::Interpolate(double time, Positions& positions) {
   const auto frame = static_cast<std::uint32_t>(floor);
   const CodedFrames::Frame* const a = Find(frame);
   const CodedFrames::Frame* b = time == floor ? a : Find(frame + 1);
-  if (a == nullptr || b == nullptr || !a->whole || !b->whole) {
-    return Status::InvalidArgument("frame " + std::to_string(frame) + " or the next is not there");
+  if (!a->whole || !b->whole) {
+    return Status::InvalidArgument("frame " + std::to_string(frame) + " or the next is lost");
   }
   // Within a group, only a cut is predicted from nothing.
   const bool cut = b != a && b->intra && frame + 1 != now_.first;

@@ -23,10 +23,8 @@ class FrameSource {
   // Frames of a new group, or the next one of an open group. The last frame of those before is kept for Interpolate().
   // kCorrupt when the first frame's shape is singular.
   Status Take(CodedFrames frames, bool starts_group);
-  // Forgets all frames.
-  void Clear();
-
   const CodedFrames& frames() const { return now_; }
+  bool Holds(std::uint32_t frame) const { return Find(frame) != nullptr; }
   // Whether a frame that it holds needed no other.
   bool IsIntra(std::uint32_t frame) const { return Find(frame) != nullptr && Find(frame)->intra; }
 
@@ -35,7 +33,7 @@ class FrameSource {
   // number.
   Status Reconstruct(std::uint32_t frame, std::uint32_t step, Positions& positions);
 
-  // At `time`, in frames, which is from the frame before frames() to the last of them; see Decoder::Interpolate().
+  // At `time`, in frames; holds the frames before and after. See Decoder::Interpolate().
   Status Interpolate(double time, Positions& positions);
 
  private:

@@ -162,26 +162,27 @@ TEST_F(DecodeTest, IntoAPipe) {
 }
 
 TEST_F(DecodeTest, DamageCanBeSkipped) {
-  Encode("clip.sac", {"--group", "4"});
+  Encode("clip.sac");  // in groups of 5
   Good({"decode", "clip.sac", "-o", "good.pc2"});
   const std::vector<Positions> good = LoadCache("good.pc2");
   // The last byte of each group's packet is of its CRC.
   std::size_t end = 4, group = 0;
-  for (const auto& packet : GoodJson({"info", "clip.sac", "--json"})["packets"]) {
+  const nlohmann::json info = GoodJson({"info", "clip.sac", "--json"});
+  for (const nlohmann::json& packet : info["packets"]) {
     end += packet["bytes"].get<std::size_t>();
     if (packet["type"] != "group") continue;
     std::string damaged = Read("clip.sac");
     damaged[end - 1] = static_cast<char>(damaged[end - 1] ^ 1);
     directory_.Write("damaged.sac", damaged);
-    const std::size_t first = 4 * group++;
+    const std::size_t first = 5 * group++, last = std::min<std::size_t>(first + 4, 11);
     const Outcome outcome = Sac({"decode", "damaged.sac", "-o", "out.pc2", "--skip-damage"});
     EXPECT_EQ(outcome.code, 0);
-    EXPECT_NE(outcome.err.find("damaged.sac: frames " + std::to_string(first) + " to " + std::to_string(first + 3) +
-                               " are lost"),
-              std::string::npos)
+    EXPECT_NE(
+        outcome.err.find("damaged.sac: frames " + std::to_string(first) + " to " + std::to_string(last) + " are lost"),
+        std::string::npos)
         << outcome.err;
     std::vector<Positions> expected = good;
-    for (std::size_t f = first; f < first + 4; ++f) expected[f] = good[first == 0 ? 4 : first - 1];
+    for (std::size_t f = first; f <= last; ++f) expected[f] = good[first == 0 ? 5 : first - 1];
     EXPECT_EQ(LoadCache("out.pc2"), expected) << first;
     EXPECT_EQ(Sac({"decode", "damaged.sac", "-o", "out.pc2"}).code, 1);
   }
@@ -189,7 +190,7 @@ TEST_F(DecodeTest, DamageCanBeSkipped) {
   const std::string stream = Read("clip.sac");
   directory_.Write("cut.sac", stream.substr(0, stream.size() * 9 / 10));
   EXPECT_EQ(Sac({"decode", "cut.sac", "-o", "cut.pc2", "--skip-damage"}).code, 0);
-  EXPECT_GE(LoadCache("cut.pc2").size(), 8u);
+  EXPECT_GE(LoadCache("cut.pc2").size(), 5u);
 }
 
 TEST_F(DecodeTest, BadStreams) {

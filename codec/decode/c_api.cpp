@@ -1,0 +1,225 @@
+#include <algorithm>
+#include <cstring>
+#include <exception>
+#include <new>
+#include <string>
+#include <utility>
+
+#include "codec/decode/decoder.h"
+#include "codec/decode/sac.h"
+
+struct sac_decoder {
+  sac::Decoder decoder;
+  std::string message;
+};
+
+namespace {
+
+using sac::Status;
+using sac::StatusCode;
+
+sac_status CodeOf(const Status& status) {
+  switch (status.code()) {
+    case StatusCode::kOk:
+      return SAC_OK;
+    case StatusCode::kNeedMoreData:
+      return SAC_NEED_MORE_DATA;
+    case StatusCode::kUnsupported:
+      return SAC_UNSUPPORTED;
+    case StatusCode::kCorrupt:
+      return SAC_CORRUPT;
+    case StatusCode::kLimit:
+      return SAC_LIMIT;
+    case StatusCode::kInvalidArgument:
+    case StatusCode::kIoError:
+      return SAC_INVALID_ARGUMENT;
+  }
+  return SAC_INVALID_ARGUMENT;
+}
+
+// Nothing is thrown across the border.
+template <class Step>
+sac_status Run(sac_decoder* decoder, Step&& step) {
+  if (decoder == nullptr) return SAC_INVALID_ARGUMENT;
+  try {
+    Status status = step(decoder->decoder);
+    const sac_status code = CodeOf(status);
+    if (code != SAC_OK && code != SAC_NEED_MORE_DATA) decoder->message = status.message();
+    return code;
+  } catch (const std::exception&) {
+    return SAC_LIMIT;
+  }
+}
+
+sac::VertexBuffer ToBuffer(const sac_vertex_buffer& b) {
+  return {b.data, b.size, b.stride, b.format == SAC_INT16 ? sac::VertexFormat::kInt16 : sac::VertexFormat::kFloat32};
+}
+
+Status ToBuffers(const sac_frame_buffers* from, sac::FrameBuffers& to) {
+  if (from == nullptr) return Status::Ok();
+  if (from->positions.format > SAC_INT16 || from->normals.format > SAC_INT16) {
+    return Status::InvalidArgument("a buffer of an unknown format");
+  }
+  to = {ToBuffer(from->positions), ToBuffer(from->normals)};
+  return Status::Ok();
+}
+
+void Describe(const sac::FrameInfo& from, sac_frame_info* to) {
+  if (to == nullptr) return;
+  to->index = from.index;
+  to->intra = from.intra ? 1 : 0;
+  to->time = from.time;
+  std::copy(from.box.low.begin(), from.box.low.end(), to->box_low);
+  std::copy(from.box.high.begin(), from.box.high.end(), to->box_high);
+}
+
+// Arrays of arrays are what C sees as one array.
+template <class Out, class In>
+const Out* Flat(const std::vector<In>& values) {
+  static_assert(sizeof(In) % sizeof(Out) == 0 && alignof(In) == alignof(Out));
+  return values.empty() ? nullptr : reinterpret_cast<const Out*>(values.data());
+}
+
+}  // namespace
+
+const char* sac_version(void) { return SAC_VERSION; }
+
+const char* sac_stream_version(void) {
+  static const std::string version = std::to_string(sac::kVersionMajor) + "." + std::to_string(sac::kVersionMinor);
+  return version.c_str();
+}
+
+void sac_settings_init(sac_settings* settings) {
+  const sac::DecoderSettings defaults;
+  const sac::Limits& limits = defaults.limits;
+  *settings = {
+      sizeof(sac_settings), limits.vertices,     limits.triangles,    limits.harmonics,  limits.frames_per_group,
+      limits.packet_bytes,  limits.group_values, limits.basis_values, limits.basis_work, defaults.skip_damage ? 1u : 0u,
+      defaults.frame_step,  defaults.threads};
+}
+
+sac_decoder* sac_decoder_open(const sac_settings* settings) {
+  sac_settings s;
+  sac_settings_init(&s);
+  if (settings != nullptr) {
+    if (settings->struct_size > sizeof(s)) return nullptr;  // of a newer library
+    std::memcpy(&s, settings, settings->struct_size);       // an older one has fewer members
+  }
+  if (s.frame_step == 0 || s.threads > 1024) return nullptr;
+  sac::DecoderSettings to;
+  to.limits.vertices = s.max_vertices;
+  to.limits.triangles = s.max_triangles;
+  to.limits.harmonics = s.max_harmonics;
+  to.limits.frames_per_group = s.max_frames_per_group;
+  to.limits.packet_bytes = s.max_packet_bytes;
+  to.limits.group_values = s.max_group_values;
+  to.limits.basis_values = s.max_basis_values;
+  to.limits.basis_work = s.max_basis_work;
+  to.skip_damage = s.skip_damage != 0;
+  to.frame_step = s.frame_step;
+  to.threads = s.threads;
+  try {
+    return new sac_decoder{sac::Decoder(to), {}};
+  } catch (const std::exception&) {
+    return nullptr;
+  }
+}
+
+void sac_decoder_close(sac_decoder* decoder) { delete decoder; }
+
+void sac_decoder_reset(sac_decoder* decoder) {
+  (void)Run(decoder, [&](sac::Decoder& d) {
+    d.Reset();
+    decoder->message.clear();
+    return Status::Ok();
+  });
+}
+
+sac_status sac_decoder_send(sac_decoder* decoder, const uint8_t** data, size_t* size) {
+  if (data == nullptr || size == nullptr || (*data == nullptr && *size > 0)) return SAC_INVALID_ARGUMENT;
+  return Run(decoder, [&](sac::Decoder& d) {
+    std::span<const std::uint8_t> bytes(*data, *size);
+    Status status = d.Send(bytes);
+    *data = bytes.data();
+    *size = bytes.size();
+    return status;
+  });
+}
+
+sac_status sac_decoder_receive(sac_decoder* decoder, const sac_frame_buffers* buffers, sac_frame_info* info) {
+  return Run(decoder, [&](sac::Decoder& d) {
+    sac::FrameBuffers to;
+    sac::FrameInfo described;
+    SAC_RETURN_IF_ERROR(ToBuffers(buffers, to));
+    SAC_RETURN_IF_ERROR(d.Receive(to, described));
+    Describe(described, info);
+    return Status::Ok();
+  });
+}
+
+sac_status sac_decoder_finish(sac_decoder* decoder) {
+  return Run(decoder, [](sac::Decoder& d) { return d.Finish(); });
+}
+
+sac_status sac_decoder_mesh(sac_decoder* decoder, sac_mesh* mesh) {
+  if (mesh == nullptr) return SAC_INVALID_ARGUMENT;
+  return Run(decoder, [&](sac::Decoder& d) {
+    if (d.mesh() == nullptr) return Status::NeedMoreData();
+    const sac::Mesh& m = *d.mesh();
+    mesh->vertices = static_cast<std::uint32_t>(m.positions.size());
+    mesh->triangles = static_cast<std::uint32_t>(m.triangles.size());
+    mesh->uvs = static_cast<std::uint32_t>(m.uvs.size());
+    mesh->frame_rate_numerator = d.header()->frame_rate_numerator;
+    mesh->frame_rate_denominator = d.header()->frame_rate_denominator;
+    mesh->triangle_vertices = Flat<std::uint32_t>(m.triangles);
+    mesh->uv_values = Flat<float>(m.uvs);
+    mesh->triangle_uvs = Flat<std::uint32_t>(m.uv_triangles);
+    mesh->normals = Flat<float>(m.normals);
+    mesh->colors = Flat<std::uint8_t>(m.colors);
+    mesh->order = Flat<std::uint32_t>(d.order());
+    return Status::Ok();
+  });
+}
+
+sac_status sac_decoder_seek(sac_decoder* decoder, uint32_t frame, uint64_t* byte) {
+  if (byte == nullptr) return SAC_INVALID_ARGUMENT;
+  return Run(decoder, [&](sac::Decoder& d) { return d.Seek(frame, *byte); });
+}
+
+sac_status sac_decoder_seek_time(sac_decoder* decoder, double seconds, uint64_t* byte) {
+  if (byte == nullptr) return SAC_INVALID_ARGUMENT;
+  return Run(decoder, [&](sac::Decoder& d) { return d.SeekTime(seconds, *byte); });
+}
+
+sac_status sac_decoder_add_index(sac_decoder* decoder, const uint8_t* tail, size_t size, size_t* needed) {
+  if (needed == nullptr || (tail == nullptr && size > 0)) return SAC_INVALID_ARGUMENT;
+  return Run(decoder, [&](sac::Decoder& d) { return d.AddIndex({tail, size}, *needed); });
+}
+
+sac_status sac_decoder_interpolate(sac_decoder* decoder, double frame_time, const sac_frame_buffers* buffers,
+                                   sac_frame_info* info) {
+  return Run(decoder, [&](sac::Decoder& d) {
+    sac::FrameBuffers to;
+    sac::FrameInfo described;
+    SAC_RETURN_IF_ERROR(ToBuffers(buffers, to));
+    SAC_RETURN_IF_ERROR(d.Interpolate(frame_time, to, described));
+    Describe(described, info);
+    return Status::Ok();
+  });
+}
+
+size_t sac_decoder_lost_count(const sac_decoder* decoder) {
+  return decoder == nullptr ? 0 : decoder->decoder.lost_frames().size();
+}
+
+sac_status sac_decoder_lost(const sac_decoder* decoder, size_t index, uint32_t* first, uint32_t* count) {
+  if (first == nullptr || count == nullptr || index >= sac_decoder_lost_count(decoder)) return SAC_INVALID_ARGUMENT;
+  const sac::FrameRange& range = decoder->decoder.lost_frames()[index];
+  *first = range.first;
+  *count = range.count;
+  return SAC_OK;
+}
+
+const char* sac_decoder_message(const sac_decoder* decoder) {
+  return decoder == nullptr ? "no decoder" : decoder->message.c_str();
+}

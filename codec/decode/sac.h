@@ -1,0 +1,159 @@
+/* The decoder of sac streams for C, and for what speaks C. codec/decode/decoder.h says more, for C++.
+ *
+ *   sac_settings settings;
+ *   sac_settings_init(&settings);
+ *   sac_decoder* decoder = sac_decoder_open(&settings);
+ *   while ((size = read(chunk)) > 0) {                           // in any chunking
+ *     const uint8_t* data = chunk;
+ *     while (size > 0) {
+ *       status = sac_decoder_send(decoder, &data, &size);         // takes at most a packet from the front
+ *       if (status != SAC_OK) goto failed;
+ *       while ((status = sac_decoder_receive(decoder, &buffers, &info)) == SAC_OK) show(&info);
+ *       if (status != SAC_NEED_MORE_DATA) goto failed;
+ *     }
+ *   }
+ *   status = sac_decoder_finish(decoder);
+ *   failed: puts(sac_decoder_message(decoder));
+ *   sac_decoder_close(decoder);
+ *
+ * A decoder is used by one thread at a time; decoders share nothing. Pointers that a decoder gives out are its own and
+ * stay valid until it is reset or closed. No function throws or ends the program. */
+#ifndef SAC_H
+#define SAC_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#if defined(_WIN32)
+#define SAC_API
+#else
+#define SAC_API __attribute__((visibility("default")))
+#endif
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+typedef enum sac_status {
+  SAC_OK = 0,
+  SAC_NEED_MORE_DATA = 1,   /* not an error: send more bytes and ask again */
+  SAC_INVALID_ARGUMENT = 2, /* what the caller gave cannot be used */
+  SAC_UNSUPPORTED = 3,      /* a stream of another version */
+  SAC_CORRUPT = 4,          /* the bytes break a rule of spec.md */
+  SAC_LIMIT = 5             /* a limit of the settings, or of memory */
+} sac_status;
+
+/* Set it with sac_settings_init(), then change what is to be different. */
+typedef struct sac_settings {
+  uint32_t struct_size; /* of this struct, set by sac_settings_init(): later versions may add members */
+  /* What a stream may ask for (spec.md 9); over it it is refused before anything is allocated. */
+  uint32_t max_vertices;
+  uint32_t max_triangles;
+  uint32_t max_harmonics;
+  uint32_t max_frames_per_group;
+  uint32_t max_packet_bytes;
+  uint64_t max_group_values;
+  uint64_t max_basis_values;
+  double max_basis_work;
+  uint32_t skip_damage; /* 1: go on after damage at the next sound group; 0: errors are final */
+  uint32_t frame_step;  /* sac_decoder_receive() gives the frames whose number is a multiple of this */
+  uint32_t threads;     /* that reconstruct frames of a group */
+} sac_settings;
+
+typedef enum sac_format {
+  SAC_FLOAT32 = 0, /* three floats */
+  /* Three integers of 16 bits. Positions: unsigned, low + (high - low) * x / 65535 of the frame's box. Normals: signed,
+   * x / 32767. */
+  SAC_INT16 = 1
+} sac_format;
+
+/* The caller's memory for three components of each vertex: of vertex v at byte v * stride. */
+typedef struct sac_vertex_buffer {
+  void* data;    /* null: not wanted */
+  size_t size;   /* bytes */
+  size_t stride; /* bytes, at least those of a vertex */
+  uint32_t format;
+} sac_vertex_buffer;
+
+typedef struct sac_frame_buffers {
+  sac_vertex_buffer positions; /* model units */
+  sac_vertex_buffer normals;   /* of length 1, computed from the frame's triangles */
+} sac_frame_buffers;
+
+typedef struct sac_frame_info {
+  uint32_t index;    /* in the clip, from 0 */
+  uint32_t intra;    /* 1: needed no other frame */
+  double time;       /* seconds from the clip's begin; 0 when the stream has no frame rate */
+  double box_low[3]; /* of the positions */
+  double box_high[3];
+} sac_frame_info;
+
+/* What does not move. Arrays that the stream does not have are null. */
+typedef struct sac_mesh {
+  uint32_t vertices;
+  uint32_t triangles;
+  uint32_t uvs;
+  uint32_t frame_rate_numerator; /* frames per second; 0: unknown */
+  uint32_t frame_rate_denominator;
+  const uint32_t* triangle_vertices; /* 3 a triangle */
+  const float* uv_values;            /* 2 a texture coordinate */
+  const uint32_t* triangle_uvs;      /* 3 a triangle: indices of texture coordinates */
+  const float* normals;              /* 3 a vertex, of the first frame */
+  const uint8_t* colors;             /* red, green, blue, alpha of a vertex */
+  const uint32_t* order;             /* per vertex its index in the encoder's input */
+} sac_mesh;
+
+typedef struct sac_decoder sac_decoder;
+
+/* The version of the library, such as "0.1.0", and of the streams that it decodes, such as "0.6". */
+SAC_API const char* sac_version(void);
+SAC_API const char* sac_stream_version(void);
+
+SAC_API void sac_settings_init(sac_settings* settings);
+
+/* Null `settings` are those of sac_settings_init(). Null when the settings cannot be used or memory is short. */
+SAC_API sac_decoder* sac_decoder_open(const sac_settings* settings);
+/* Null is allowed. */
+SAC_API void sac_decoder_close(sac_decoder* decoder);
+/* Forgets everything but the settings: another stream may begin. */
+SAC_API void sac_decoder_reset(sac_decoder* decoder);
+
+/* Takes bytes from *data, at most until a packet is complete, and moves *data and *size on. Takes nothing while frames
+ * wait to be received. */
+SAC_API sac_status sac_decoder_send(sac_decoder* decoder, const uint8_t** data, size_t* size);
+/* The next frame into the caller's memory. SAC_NEED_MORE_DATA when none is ready; SAC_INVALID_ARGUMENT, and the frame
+ * still waits, when a buffer is too small. Either pointer may be null. */
+SAC_API sac_status sac_decoder_receive(sac_decoder* decoder, const sac_frame_buffers* buffers, sac_frame_info* info);
+/* Declares the end of the bytes: SAC_CORRUPT when the stream is not complete. With skip_damage, more frames may be
+ * received afterwards. */
+SAC_API sac_status sac_decoder_finish(sac_decoder* decoder);
+
+/* The triangles and attributes; SAC_NEED_MORE_DATA before they have been sent. */
+SAC_API sac_status sac_decoder_mesh(sac_decoder* decoder, sac_mesh* mesh);
+
+/* Goes to a frame, or to the one that is shown at so many seconds: the next bytes sent must be those of the stream from
+ * *byte on. SAC_NEED_MORE_DATA before the mesh has been sent. A clip is played again by seeking frame 0. */
+SAC_API sac_status sac_decoder_seek(sac_decoder* decoder, uint32_t frame, uint64_t* byte);
+SAC_API sac_status sac_decoder_seek_time(sac_decoder* decoder, double seconds, uint64_t* byte);
+/* Tells where groups begin, from the last bytes of the stream. SAC_NEED_MORE_DATA: *needed of them are needed, 8 at
+ * first. SAC_INVALID_ARGUMENT: the stream has no index; likewise when *needed comes to be more than the stream has. */
+SAC_API sac_status sac_decoder_add_index(sac_decoder* decoder, const uint8_t* tail, size_t size, size_t* needed);
+
+/* The shape at a time between frames, in frames from the clip's begin. Frames before it count as received.
+ * SAC_NEED_MORE_DATA when the frame after has not been sent; SAC_INVALID_ARGUMENT when the one before is gone: seek it.
+ */
+SAC_API sac_status sac_decoder_interpolate(sac_decoder* decoder, double frame_time, const sac_frame_buffers* buffers,
+                                           sac_frame_info* info);
+
+/* With skip_damage: how many runs of frames are lost so far, and the one of that index. */
+SAC_API size_t sac_decoder_lost_count(const sac_decoder* decoder);
+SAC_API sac_status sac_decoder_lost(const sac_decoder* decoder, size_t index, uint32_t* first, uint32_t* count);
+
+/* What the last call that failed complained of, one line; empty when none has. */
+SAC_API const char* sac_decoder_message(const sac_decoder* decoder);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif
