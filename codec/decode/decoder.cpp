@@ -13,6 +13,7 @@
 #include "codec/decode/group_parser.h"
 #include "codec/decode/i_frame.h"
 #include "codec/decode/lost_frames.h"
+#include "codec/decode/packet_source.h"
 #include "codec/decode/seek_table.h"
 #include "codec/reconstruct.h"
 #include "codec/shape.h"
@@ -20,20 +21,13 @@
 #include "format/crc32.h"
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
-#include "format/packet_search.h"
 #include "format/stream_index.h"
 
 namespace sac {
-namespace {
-
-// After damage, bytes are read again from the damaged packet on: so many times all of them, and so many beside.
-constexpr std::uint64_t kMostRereading = 4, kFreeRereading = 1 << 20;
-
-}  // namespace
 
 class Decoder::Impl {
  public:
-  explicit Impl(const DecoderSettings& s) : settings(s), packets_(s.limits) {}
+  explicit Impl(const DecoderSettings& s) : settings(s), packets_(s.limits, s.skip_damage) {}
 
   Status Send(std::span<const std::uint8_t>& bytes);
   Status Receive(Positions& positions, FrameInfo& info);
@@ -49,12 +43,11 @@ class Decoder::Impl {
   LostFrames lost;
 
  private:
-  // Reads one packet, or the record of an open group, from the front of `bytes`.
+  // Reads a packet, or the record of an open group, from the front of `bytes` or from those that are read again.
   Status Advance(std::span<const std::uint8_t>& bytes);
-  // What is left of the bytes that were read in vain.
-  Status AdvanceReplay();
-  // Goes on at the next packet that is sound, from the second byte of the one in packets_.
-  void Resynchronize();
+  // What there is without more bytes. False when there is nothing.
+  bool CanAdvance();
+  Status AdvanceAlone();
 
   Status Take(const Packet& packet, std::uint64_t begin);
   Status TakeHeader(std::span<const std::uint8_t> payload);
@@ -68,9 +61,6 @@ class Decoder::Impl {
   // Whether the stream goes on with `frame`: notes what is lost before.
   Status ContinueAt(std::uint32_t frame);
 
-  bool Replays() const { return replayed_ < replay_.size(); }
-  // At the end of the bytes: whether there are frames in what is left of an unfinished packet.
-  bool Salvage();
   bool FrameWaits() const { return source_ && next_out_ < source_->frames().end(); }
   bool ReferencesPrevious() const {
     return header->reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious);
@@ -89,13 +79,7 @@ class Decoder::Impl {
     }
   }
 
-  PacketReader packets_;
-  std::optional<PacketSearch> search_;
-  bool damaged_ = false;              // the packet in packets_ is
-  std::vector<std::uint8_t> replay_;  // bytes to be read again, from replayed_ on
-  std::size_t replayed_ = 0;
-  std::uint64_t reread_ = 0;    // bytes that were, in all
-  std::uint64_t position_ = 0;  // in the stream, of the next byte to be read
+  PacketSource packets_;
   std::optional<Status> error_;
   bool ended_ = false;     // the end packet has been read
   bool finished_ = false;  // no more bytes will be sent
@@ -121,7 +105,6 @@ class Decoder::Impl {
   std::optional<std::uint64_t> next_frame_ = 0;  // that the stream has; none after Seek()
   std::uint64_t next_out_ = 0;                   // of those in source_
   std::uint64_t wanted_ = 0;                     // frames before are not given out
-  bool from_start_ = true;                       // all packets have been read
   SeekTable places_;
   std::optional<std::uint32_t> total_frames_;
 };
@@ -129,30 +112,7 @@ class Decoder::Impl {
 Status Decoder::Impl::Send(std::span<const std::uint8_t>& bytes) {
   if (error_) return *error_;
   if (FrameWaits()) return Status::Ok();
-  if (Replays()) return AdvanceReplay();
-  return Guard([&] {
-    const Status status = Advance(bytes);
-    if (std::exchange(damaged_, false)) Resynchronize();
-    return status;
-  });
-}
-
-Status Decoder::Impl::AdvanceReplay() {
-  return Guard([this] {
-    Status status;
-    while (status.ok() && Replays() && !FrameWaits()) {
-      std::span<const std::uint8_t> rest = std::span(replay_).subspan(replayed_);
-      const std::size_t before = rest.size();
-      status = Advance(rest);
-      replayed_ += before - rest.size();
-      if (std::exchange(damaged_, false)) Resynchronize();
-      if (replayed_ == replay_.size()) {
-        replay_.clear();
-        replayed_ = 0;
-      }
-    }
-    return status;
-  });
+  return Guard([&] { return Advance(bytes); });
 }
 
 Status Decoder::Impl::Advance(std::span<const std::uint8_t>& bytes) {
@@ -162,45 +122,28 @@ Status Decoder::Impl::Advance(std::span<const std::uint8_t>& bytes) {
     return Status::Ok();
   }
   std::optional<Packet> packet;
-  const std::size_t before = bytes.size();
-  Status status;
-  if (search_) {
-    search_->Read(bytes, packet);
-  } else {
-    status = packets_.Read(bytes, packet);
-  }
-  position_ += before - bytes.size();
-  if (!status.ok()) {
-    if (!settings.skip_damage) return status;
-    damaged_ = true;
-    return Status::Ok();
-  }
+  bool damaged = false;
+  SAC_RETURN_IF_ERROR(packets_.Read(bytes, packet, damaged));
+  if (damaged && parser_) parser_->Close();
   if (!packet) return Status::Ok();
-  if (search_) {
-    packets_.Restart(position_, packet->type == PacketType::kGroup && OpensGroup(packet->payload));
-    search_.reset();
-    // Bytes that lie again and again would be read again and again.
-    if (reread_ > kMostRereading * position_ + kFreeRereading) search_.emplace(settings.limits);
-  }
-  const std::size_t size = PacketSize(packet->payload.size());
-  return Take(*packet, position_ - std::min<std::uint64_t>(size, position_));
+  const std::uint64_t size = PacketSize(packet->payload.size());
+  return Take(*packet, packets_.position() - std::min(size, packets_.position()));
 }
 
-void Decoder::Impl::Resynchronize() {
-  std::vector<std::uint8_t> pending = packets_.TakePending();
-  search_.emplace(settings.limits);
-  from_start_ = false;
-  if (parser_) parser_->Close();
-  if (pending.empty()) return;
-  const std::size_t back = pending.size() - 1;
-  position_ -= back;
-  reread_ += back;
-  if (pending.size() <= replayed_) {
-    replayed_ -= back;
-  } else {  // then all of the replay is in it
-    replay_ = std::move(pending);
-    replayed_ = 1;
-  }
+bool Decoder::Impl::CanAdvance() {
+  if (ended_) return false;
+  if (!finished_ || packets_.HasOld()) return packets_.HasOld();
+  std::vector<std::uint8_t> cut;
+  if (packets_.Finish(cut)) return true;
+  if (parser_ && !parser_->is_open()) TakeCutGroup(cut);
+  return FrameWaits();
+}
+
+Status Decoder::Impl::AdvanceAlone() {
+  return Guard([this] {
+    std::span<const std::uint8_t> none;
+    return FrameWaits() ? Status::Ok() : Advance(none);
+  });
 }
 
 Status Decoder::Impl::Take(const Packet& packet, std::uint64_t begin) {
@@ -253,7 +196,7 @@ Status Decoder::Impl::TakeIFrame(std::span<const std::uint8_t> payload) {
   i_frame_size_ = payload.size();
   parser_.emplace(*header, shape_.layouts, settings.limits);
   source_.emplace(shape_, *header, settings.threads);
-  places_.Start(position_);
+  places_.Start(packets_.position());
   return Status::Ok();
 }
 
@@ -358,7 +301,7 @@ Status Decoder::Impl::TakeEnd(std::span<const std::uint8_t> payload, std::uint64
                                std::to_string(*next_frame_) + " found");
     }
   }
-  if (status.ok() && end.index && from_start_ && !lost.any() && !places_.Matches(*end.index, begin)) {
+  if (status.ok() && end.index && packets_.from_start() && !lost.any() && !places_.Matches(*end.index, begin)) {
     status = Status::Corrupt("end: the index is not the stream's");
   }
   if (!status.ok()) return settings.skip_damage ? Status::Ok() : status;
@@ -371,8 +314,8 @@ Status Decoder::Impl::Receive(Positions& positions, FrameInfo& info) {
   while (true) {
     if (error_) return *error_;
     if (!FrameWaits()) {
-      if (!Replays() && !Salvage()) return Status::NeedMoreData();
-      SAC_RETURN_IF_ERROR(AdvanceReplay());
+      if (!CanAdvance()) return Status::NeedMoreData();
+      SAC_RETURN_IF_ERROR(AdvanceAlone());
       continue;
     }
     const auto frame = static_cast<std::uint32_t>(next_out_++);
@@ -410,8 +353,8 @@ Status Decoder::Impl::Interpolate(double time, Positions& positions, FrameInfo& 
       return Status::InvalidArgument("frame " + std::to_string(frame) + " or the next is gone");
     }
     next_out_ = source_->frames().end();
-    if (!Replays() && !Salvage()) return Status::NeedMoreData();
-    SAC_RETURN_IF_ERROR(AdvanceReplay());
+    if (!CanAdvance()) return Status::NeedMoreData();
+    SAC_RETURN_IF_ERROR(AdvanceAlone());
   }
   next_out_ = std::max<std::uint64_t>(next_out_, frame);
   Status status;
@@ -431,13 +374,9 @@ Status Decoder::Impl::Seek(std::uint32_t frame, std::uint64_t& byte) {
                                    std::to_string(*total_frames_) + " frames");
   }
   byte = places_.Find(frame);
-  packets_.Restart(byte, false);
-  search_.reset();
-  replay_.clear();
-  replayed_ = 0;
-  position_ = byte;
+  packets_.Restart(byte);
   error_.reset();
-  ended_ = finished_ = from_start_ = after_header_ = false;
+  ended_ = finished_ = after_header_ = false;
   parser_->Close();
   next_frame_.reset();
   next_out_ = source_->frames().end();  // none waits
@@ -452,27 +391,6 @@ Status Decoder::Impl::AddIndex(std::span<const std::uint8_t> tail, std::size_t& 
   total_frames_ = 0;
   for (const StreamIndex::Group& group : index.groups) *total_frames_ += group.frames;
   return Status::Ok();
-}
-
-bool Decoder::Impl::Salvage() {
-  if (!finished_ || search_ || ended_) return false;
-  std::vector<std::uint8_t> pending = packets_.TakePending();
-  if (pending.empty()) return false;
-  // The size of the packet may be damaged: then there are others in it.
-  PacketSearch search(settings.limits);
-  std::optional<Packet> found;
-  std::span<const std::uint8_t> rest = std::span(pending).subspan(1);
-  search.Read(rest, found);
-  if (found) {
-    search_.emplace(settings.limits);
-    position_ -= pending.size() - 1;
-    reread_ += pending.size() - 1;
-    replay_ = std::move(pending);
-    replayed_ = 1;
-    return true;
-  }
-  if (parser_ && !parser_->is_open()) TakeCutGroup(pending);
-  return FrameWaits();
 }
 
 void Decoder::Impl::TakeCutGroup(std::span<const std::uint8_t> packet) {
@@ -493,11 +411,11 @@ void Decoder::Impl::TakeCutGroup(std::span<const std::uint8_t> packet) {
 
 Status Decoder::Impl::Finish() {
   if (error_) return *error_;
-  const auto truncated = [this] { return Truncated(position_, next_frame_.value_or(0)); };
+  const auto truncated = [this] { return Truncated(packets_.position(), next_frame_.value_or(0)); };
   if (!settings.skip_damage) return ended_ && !FrameWaits() ? Status::Ok() : Latch(truncated());
   finished_ = true;
   const Status status = Guard([this] {
-    while (!FrameWaits() && (Replays() || Salvage())) SAC_RETURN_IF_ERROR(AdvanceReplay());
+    while (!FrameWaits() && CanAdvance()) SAC_RETURN_IF_ERROR(AdvanceAlone());
     return Status::Ok();
   });
   if (!status.ok()) return status;
