@@ -1,0 +1,172 @@
+"""The parts of the I-frame and its side information: spec.md 5 and 5.2."""
+
+import struct
+from dataclasses import dataclass
+
+from .byte_reader import ByteReader
+from .errors import require
+from .range_coder import RangeDecoder, SignedModels, UnsignedModels
+from .sequence_header import SequenceHeader
+
+
+@dataclass
+class IFrameParts:
+    """The elements of spec.md 5. Without a mesh, positions is None."""
+
+    mesh: bytes
+    position_step: int
+    position_slope: int
+    positions: bytes | None
+    side_information: bytes
+
+
+def split_i_frame(payload: bytes) -> IFrameParts:
+    """spec.md 5, the table."""
+    reader = ByteReader(payload, end_rule=24, varint_rule=24)
+    mesh = reader.bytes(reader.varint())
+    position_step = position_slope = 0
+    positions = None
+    if mesh:
+        position_step = reader.varint()
+        position_slope = reader.varint()
+        reader.end_rule = reader.varint_rule = 38
+        positions = reader.bytes(reader.varint())
+    return IFrameParts(mesh, position_step, position_slope, positions, reader.rest())
+
+
+@dataclass
+class LooseVertex:
+    """A vertex of none of Draco's triangles: spec.md 5.2."""
+
+    position: tuple[int, int, int]
+    normal: tuple[float, ...] | None
+    color: tuple[int, ...] | None
+
+
+@dataclass
+class SideInformation:
+    """spec.md 5.2. `order` is None unless the author's order is kept; welds are pairs (point, onto)."""
+
+    welds: list[tuple[int, int]]
+    has_normals: int
+    has_colors: int
+    loose_vertices: list[LooseVertex]
+    loose_triangles: list[tuple[int, ...]]
+    harmonics: list[int]
+    samples_per_harmonic: int
+    fingerprint: tuple[float, float]
+    order: list[int] | None
+
+
+def _raw_f32(decoder: RangeDecoder) -> float:
+    return struct.unpack("<f", struct.pack("<I", decoder.raw(32)))[0]
+
+
+def _welds(decoder: RangeDecoder, header: SequenceHeader) -> list[tuple[int, int]]:
+    """spec.md 5.2, "Welds"."""
+    count = UnsignedModels().decode(decoder)
+    require(count <= 3 * header.triangles, 25, f"{count} welds")
+    skip, distance = UnsignedModels(), UnsignedModels()
+    welds = []
+    following = 1
+    for _ in range(count):
+        point = following + skip.decode(decoder)
+        require(point < 3 * header.triangles, 25, f"a weld of entry {point}")
+        weld_distance = distance.decode(decoder)
+        require(weld_distance < point, 25, "a weld onto nothing")
+        welds.append((point, point - 1 - weld_distance))
+        following = point + 1
+    return welds
+
+
+def _loose_vertices(
+    decoder: RangeDecoder, header: SequenceHeader, has_normals: int, has_colors: int
+) -> list[LooseVertex]:
+    """spec.md 5.2, "Loose vertices"."""
+    count = UnsignedModels().decode(decoder)
+    require(count <= header.vertices, 26, f"{count} loose vertices")
+    models = [SignedModels(), SignedModels(), SignedModels()]
+    position = [0, 0, 0]
+    vertices = []
+    for _ in range(count):
+        for axis in range(3):
+            position[axis] += models[axis].decode(decoder)
+            require(0 <= position[axis] < 2**header.position_bits, 26, "a loose vertex off the grid")
+        normal = tuple(_raw_f32(decoder) for _ in range(3)) if has_normals else None
+        color = tuple(decoder.raw(8) for _ in range(4)) if has_colors else None
+        vertices.append(LooseVertex((position[0], position[1], position[2]), normal, color))
+    return vertices
+
+
+def _loose_triangles(decoder: RangeDecoder, header: SequenceHeader) -> list[tuple[int, ...]]:
+    """spec.md 5.2, "Loose triangles"."""
+    count = UnsignedModels().decode(decoder)
+    require(count <= header.triangles, 27, f"{count} loose triangles")
+    difference = SignedModels()
+    corner = 0
+    triangles = []
+    for _ in range(count):
+        corners = []
+        for _ in range(3):
+            corner += difference.decode(decoder)
+            require(0 <= corner < header.vertices, 27, "a corner that is no vertex")
+            corners.append(corner)
+        triangles.append(tuple(corners))
+    return triangles
+
+
+def _harmonics(decoder: RangeDecoder, header: SequenceHeader) -> list[int]:
+    """spec.md 5.2, "Harmonics per component"."""
+    count = UnsignedModels().decode(decoder)
+    require(count <= header.vertices, 28, f"{count} components")
+    difference = SignedModels()
+    harmonics: list[int] = []
+    previous = header.harmonics
+    for _ in range(count):
+        previous += difference.decode(decoder)
+        require(1 <= previous <= header.harmonics, 28, f"a component of {previous} harmonics")
+        harmonics.append(previous)
+    require(sum(harmonics) == header.harmonics, 28, "the components' harmonics do not add up")
+    return harmonics
+
+
+def _order(decoder: RangeDecoder, header: SequenceHeader) -> list[int]:
+    """spec.md 5.2, "Order"."""
+    difference = SignedModels()
+    order: list[int] = []
+    seen = set()
+    for _ in range(header.vertices):
+        expected = order[-1] + 1 if order else 0
+        if expected == header.vertices:
+            expected = 0
+        index = expected + difference.decode(decoder)
+        require(0 <= index < header.vertices and index not in seen, 29, "the order is no permutation")
+        seen.add(index)
+        order.append(index)
+    return order
+
+
+def parse_side_information(data: bytes, header: SequenceHeader) -> SideInformation:
+    """spec.md 5.2. Every row of its table has models of its own, all fresh."""
+    decoder = RangeDecoder(data, rule=30)
+    welds = _welds(decoder, header)
+    has_normals = decoder.raw(1)
+    has_colors = decoder.raw(1)
+    loose_vertices = _loose_vertices(decoder, header, has_normals, has_colors)
+    loose_triangles = _loose_triangles(decoder, header)
+    harmonics = _harmonics(decoder, header)
+    samples_per_harmonic = UnsignedModels().decode(decoder)
+    fingerprint = (_raw_f32(decoder), _raw_f32(decoder))
+    order = _order(decoder, header) if decoder.raw(1) else None
+    decoder.finish()
+    return SideInformation(
+        welds,
+        has_normals,
+        has_colors,
+        loose_vertices,
+        loose_triangles,
+        harmonics,
+        samples_per_harmonic,
+        fingerprint,
+        order,
+    )

@@ -1,0 +1,39 @@
+"""What conformance/manifest.json says of a stream, from a decoded clip."""
+
+import zlib
+
+import numpy as np
+
+from .stream import Clip
+
+
+def words_crc32(values) -> str:
+    """The CRC-32 of integers, 4 bytes each, little-endian, as eight hexadecimal digits."""
+    return f"{zlib.crc32(np.asarray(values, np.int64).astype('<u4').tobytes()):08x}"
+
+
+def summary(clip: Clip) -> dict:
+    """The integers of a clip by the keys of conformance/README.md, without positions."""
+    mesh = clip.mesh
+    result = {
+        "frames": len(clip.frames),
+        "vertices": len(mesh.grid),
+        "triangles": len(mesh.triangles),
+        "triangles_crc32": words_crc32(mesh.triangles),
+        "coefficients_crc32": f"{clip.coefficients_crc32:08x}",
+    }
+    if mesh.uvs is not None:
+        result["uvs"] = len(mesh.uvs)
+        result["uv_triangles_crc32"] = words_crc32(mesh.uv_triangles)
+    if mesh.normals is not None:
+        result["normals"] = len(mesh.normals)
+    if mesh.colors is not None:
+        result["colors_crc32"] = words_crc32(mesh.colors)
+    if mesh.order is not None:
+        result["order_crc32"] = words_crc32(mesh.order)
+    return result
+
+
+def tolerance(clip: Clip, coordinates: np.ndarray) -> np.ndarray:
+    """How far a coordinate that was rounded to binary32 may be from this decoder's: spec.md 8."""
+    return 1e-6 * max(clip.first_diagonal(), clip.header.cell) + 2.0**-24 * np.abs(coordinates)
