@@ -87,7 +87,7 @@ class PlaneDecoder:
 
     def decode(self, decoder: RangeDecoder, context: PlaneContext) -> np.ndarray:
         """The residuals [rows, channels] of a plane that is not empty."""
-        return _FrameOfPlane(self, decoder, context).decode()
+        return FrameOfPlane(self, decoder, context).decode()
 
     def remember(self, residuals: np.ndarray, step: int) -> None:
         """spec.md 7.4.3, "Recent magnitude": after each plane of each frame, empty or not."""
@@ -95,7 +95,7 @@ class PlaneDecoder:
         self.recent += (4 * magnitudes - self.recent) >> 3
 
 
-class _FrameOfPlane:
+class FrameOfPlane:
     """Decodes a plane of one frame. The table of 7.4.3 is computed for the whole plane where that is possible."""
 
     def __init__(self, models: PlaneDecoder, decoder: RangeDecoder, context: PlaneContext) -> None:
@@ -135,12 +135,12 @@ class _FrameOfPlane:
         rows, channels = self.models.shape
         for i in range(rows):
             for j in range(channels):
-                value = self._residual(i, j)
+                value = self.residual(i, j)
                 self.r[i + 4][j] = value
                 self.m[i + 4][j] = min(abs(value), 2**15)
         return np.array(self.r[4:], np.int64).reshape(rows, channels)
 
-    def _residual(self, i: int, j: int) -> int:
+    def residual(self, i: int, j: int) -> int:
         """spec.md 7.4, the residual of row i in channel j."""
         models, decoder = self.models, self.decoder
         m = self.m
