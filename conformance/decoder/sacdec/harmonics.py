@@ -48,8 +48,7 @@ def scale_and_sign(begin: int, values: np.ndarray, vectors: np.ndarray, masses: 
 def exact_basis(matrix: sp.csc_matrix, masses: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
     """The `count` smallest eigenpairs of L h = lambda D h (6.4), D the diagonal of the masses.
 
-    Both sides are scaled by D^(-1/2), which makes an ordinary symmetric eigenproblem. A dense solver's error is relative
-    to the greatest eigenvalue; one inverse iteration and Rayleigh-Ritz make it relative to the small ones.
+    Both sides are scaled by D^(-1/2), which makes an ordinary symmetric eigenproblem.
     """
     n = len(masses)
     root = sp.diags(1 / np.sqrt(masses))
@@ -61,10 +60,6 @@ def exact_basis(matrix: sp.csc_matrix, masses: np.ndarray, count: int) -> tuple[
         values, vectors = sp.linalg.eigsh(scaled, count, sigma=-1.0, v0=start, maxiter=100 * count)
         ascending = np.argsort(values)
         values, vectors = values[ascending], vectors[:, ascending]
-    if count < n:
-        vectors = scipy.sparse.linalg.splu((scaled + sp.identity(n)).tocsc()).solve(vectors)
-        values, mixed = scipy.linalg.eigh(vectors.T @ (scaled @ vectors), vectors.T @ vectors)
-        vectors = vectors @ mixed
     return values, root @ vectors
 
 
