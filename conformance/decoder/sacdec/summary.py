@@ -35,5 +35,6 @@ def summary(clip: Clip) -> dict:
 
 
 def tolerance(clip: Clip, coordinates: np.ndarray) -> np.ndarray:
-    """How far a coordinate that was rounded to binary32 may be from this decoder's: spec.md 8."""
-    return 1e-6 * max(clip.first_diagonal(), clip.header.cell) + 2.0**-24 * np.abs(coordinates)
+    """How far coordinates that were rounded to binary32 may be from this decoder's: spec.md 8."""
+    exact = max(1e-6 * max(clip.first_diagonal(), clip.header.cell), 1e-12 * np.abs(coordinates).max(initial=0))
+    return exact + 2.0**-24 * np.abs(coordinates)
