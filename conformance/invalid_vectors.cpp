@@ -214,7 +214,7 @@ void AddPackets(Collection& c) {
 void AddRecords(Collection& c) {
   // The small stream's second half: an open group of two frames. `change` is given its records after the packet.
   const auto records = [&](const char* rule, const char* name, const std::function<void(Bytes&)>& change,
-                           const char* status = "corrupt") {
+                           const char* status = "corrupt", bool cut = false) {
     StreamParts parts = SmallStream();
     const auto fill = [](std::uint32_t i, FrameSyntax& frame) { frame.planes[kMotion][0] = 1 + static_cast<int>(i); };
     Bytes group = CodeOpenGroup(parts, 2, fill, 3);
@@ -224,9 +224,14 @@ void AddRecords(Collection& c) {
     group.insert(group.end(), after.begin(), after.end());
     parts.open_groups = {group};
     parts.frames += 2;
-    c.Add(rule, name, parts.Join(), status);
+    Bytes stream = parts.Join();
+    if (cut) stream.resize(stream.size() - 6);  // the end packet
+    c.Add(rule, name, std::move(stream), status);
   };
-  records("R5", "open_group", [](Bytes& b) { b.resize(3); });
+  records(
+      "R5", "open_group", [](Bytes& b) { b.resize(b.size() - 5); }, "corrupt", true);
+  records(
+      "R5", "frame", [](Bytes& b) { b.resize(3); }, "corrupt", true);
   records("R64", "long", [](Bytes& b) { b = {0xff, 0xff, 0xff, 0xff, 0xff}; });
   records("R64", "superfluous_zero", [](Bytes& b) { b = {0x80, 0x00}; });
   records("R65", "frame", [](Bytes& b) { b[1] ^= 4; });
@@ -249,7 +254,7 @@ void AddRecords(Collection& c) {
     parts.frames += 1;
     c.Add(rule, name, parts.Join());
   };
-  frame("R56", "record_long", {0, 0, 0, 0, 0, 0, 0, 0, 1});
+  frame("R56", "record_long", {0xfe, 0xfe, 0xfe, 0xfe, 0xfe, 0xfe, 0xfe, 0xfe, 0xfe, 0xfe, 0xfe, 0xfe, 0xfe, 0xfe});
 }
 
 void AddHeader(Collection& c) {

@@ -56,6 +56,42 @@ Mesh OddMesh() {
   return mesh;
 }
 
+// More neighbours, and more triangles at an edge, than the code of positions looks at (spec.md 5.5): double cones
+// around 31, 32 and 33 vertices, joined to each other, a book of 25 pages, and triangles at random.
+Mesh CrowdedMesh() {
+  Mesh mesh;
+  std::mt19937 random(2);
+  const auto jitter = [&] { return static_cast<float>(random() % 1000) / 1000; };
+  const auto size = [&] { return static_cast<std::uint32_t>(mesh.positions.size()); };
+  for (std::uint32_t ring = 31; ring <= 33; ++ring) {
+    const std::uint32_t top = size(), bottom = top + 1, first = top + 2;
+    const float x = 3 * static_cast<float>(ring - 31);
+    mesh.positions.insert(mesh.positions.end(), {{x, 0, 1}, {x, 0, -1}});
+    for (std::uint32_t i = 0; i < ring; ++i) {
+      const float turn = 6.2831853f * static_cast<float>(i) / static_cast<float>(ring);
+      mesh.positions.push_back({x + std::cos(turn), std::sin(turn), 0.1f * jitter()});
+      const std::uint32_t a = first + i, b = first + (i + 1) % ring;
+      mesh.triangles.insert(mesh.triangles.end(), {{top, a, b}, {bottom, b, a}});
+    }
+    if (ring > 31) mesh.triangles.push_back({top + 2, top - 1, top - 2});
+  }
+  const std::uint32_t spine = size();
+  mesh.positions.insert(mesh.positions.end(), {{0, 3, 0}, {0, 3, 1}});
+  for (std::uint32_t page = 0; page < 25; ++page) {
+    const float turn = 0.25f * static_cast<float>(page), length = 1 + jitter();
+    mesh.triangles.push_back({spine, spine + 1, size()});
+    if (page > 0) mesh.triangles.push_back({size() - 1, size(), spine});
+    mesh.positions.push_back({length * std::cos(turn), 3 + length * std::sin(turn), jitter()});
+  }
+  const std::uint32_t tangle = size();
+  for (int i = 0; i < 30; ++i) mesh.positions.push_back({3 + jitter(), 3 + jitter(), jitter()});
+  for (int i = 0; i < 120; ++i) {
+    Triangle& t = mesh.triangles.emplace_back();
+    for (std::uint32_t& corner : t) corner = tangle + random() % 30;
+  }
+  return mesh;
+}
+
 // The first frame again and again, then motion, then its last frame again and again.
 Clip StandStill() {
   Clip clip = Synth(SynthKind::kFlag, 120, 12);
@@ -123,6 +159,28 @@ Bytes Perverse() {
         parts.frames));
     parts.frames += size[0];
   }
+  return parts.Join();
+}
+
+// A pyramid of levels to 10, of which the last two have steps at their bound, and large coefficients.
+Bytes Deep() {
+  StreamParts parts = SmallStream();
+  parts.header.level_growth = 120;
+  for (float* step : {&parts.header.motion_step, &parts.header.displacement_step, &parts.header.detail_step,
+                      &parts.header.correction_step}) {
+    *step *= 1e-8f;
+  }
+  std::mt19937 random(3);
+  parts.groups = {CodeGroup(parts, 1025, 1024, [&](std::uint32_t, FrameSyntax& frame) {
+    if (random() % 16 != 0) return;
+    for (PlaneValues& plane : frame.planes) {
+      const std::int32_t most = &plane == &frame.planes[kCorrection] ? 1 << 20 : 1 << (random() % 15);
+      for (std::int32_t& r : plane) {
+        if (random() % 3 == 0) r = static_cast<std::int32_t>(random() % (2 * most)) - most;
+      }
+    }
+  })};
+  parts.frames = 1025;
   return parts.Join();
 }
 
@@ -243,6 +301,7 @@ std::vector<ValidVector> ValidVectors() {
   encode("components", "many components, colours, kept order", Synth(SynthKind::kParts, 200, 20), kept);
   encode("seam", "texture coordinates with a seam, kept order", Synth(SynthKind::kVase, 200, 10), kept);
   encode("odd", "welds, loose vertices and triangles, all attributes, kept order", Wave(OddMesh(), 12), kept, 60);
+  encode("crowded", "vertices of more than 32 edges, edges of many triangles", Wave(CrowdedMesh(), 3), s, 60);
   encode("stand_still", "frames that repeat, within a group and across groups", StandStill(), pyramids);
   encode("cuts", "intra frames within a group", Cuts(), pyramids);
   EncoderSettings detail = s;
@@ -253,6 +312,10 @@ std::vector<ValidVector> ValidVectors() {
   bounded.harmonics = 20;
   bounded.max_error = 0.01;
   encode("bounded", "a correction plane", Synth(SynthKind::kParts, 150, 8), bounded);
+  EncoderSettings rows = s;
+  rows.harmonics = 10;
+  rows.max_error = 0.05;
+  encode("rows", "planes of more than 1,024 rows", Synth(SynthKind::kFlag, 1200, 2), rows, 5);
   EncoderSettings everything = previous;
   everything.detail_step = 0.01;
   everything.max_error = 0.02;
@@ -296,6 +359,7 @@ std::vector<ValidVector> ValidVectors() {
                      "explicit references of all kinds, all magnitudes, level growth 2, levels above 2, a pyramid much "
                      "longer than its group",
                      Perverse()});
+  vectors.push_back({"deep", "levels to 10, steps at their bound of 4,096, large coefficients", Deep()});
   vectors.push_back({"perverse_previous", "the same against the frame before, with intra frames", PerversePrevious()});
   return vectors;
 }
