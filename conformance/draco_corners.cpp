@@ -6,8 +6,8 @@
 //   attributes  for each: type and data_type by Draco's numbers, components, indices: the value of each point,
 //               and values in the order in which they are coded, floats and integers of 32 bits as their bits
 //
-// Exit code 1 if Draco cannot decode it. Part of the decoder in conformance/decoder, and linked to Draco alone, so that
-// nothing of sac's own decoder is in that one.
+// Exit code 3 if Draco cannot decode it: no code that a sanitizer ends with. Part of the decoder in
+// conformance/decoder, and linked to Draco alone, so that nothing of sac's own decoder is in that one.
 
 #include <draco/compression/decode.h>
 
@@ -63,7 +63,7 @@ int main() {
   const auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
   if (!decoded.ok()) {
     std::fprintf(stderr, "draco_corners: %s\n", decoded.status().error_msg());
-    return 1;
+    return 3;
   }
   const draco::Mesh& mesh = *decoded.value();
   std::printf("{\"remaining\":%lld,\"points\":%u,\"faces\":[", static_cast<long long>(buffer.remaining_size()),

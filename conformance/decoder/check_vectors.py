@@ -2,7 +2,7 @@
 """Decodes the conformance vectors with this decoder and compares the results with conformance/manifest.json.
 
 A valid stream must give the manifest's integers, and its positions within the tolerance of spec.md 8; an invalid one must
-be refused with the class of the manifest. Exit code 1 if one does not, 77 if the packages that this needs are missing.
+be refused with the class of the manifest. Exit code 1 if one does not, 77 if the packages or the program that this needs are missing.
 """
 
 import argparse
@@ -14,6 +14,7 @@ from pathlib import Path
 try:
     import numpy as np
 
+    from sacdec.draco_mesh import draco_corners_command
     from sacdec.errors import StreamError
     from sacdec.stream import Clip, decode_stream
     from sacdec.summary import summary, tolerance
@@ -66,6 +67,11 @@ def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("-v", "--verbose", action="store_true", help="a line for every stream")
     verbose = parser.parse_args().verbose
+    try:
+        draco_corners_command()
+    except FileNotFoundError as missing_program:
+        print(f"skipped: {missing_program}")
+        return 77
     manifest = json.loads((CONFORMANCE / "manifest.json").read_text())
     failures = 0
     for expected in manifest["valid"]:

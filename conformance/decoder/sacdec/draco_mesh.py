@@ -62,9 +62,10 @@ def _check_header(data: bytes, triangles: int) -> None:
 
 def _run_draco(data: bytes) -> dict:
     done = subprocess.run([draco_corners_command()], input=data, capture_output=True, timeout=300, check=False)
-    if done.returncode < 0:
-        raise RuntimeError(f"draco_corners was ended by signal {-done.returncode}")
-    require(done.returncode == 0, 33, done.stderr.decode(errors="replace").strip())
+    message = done.stderr.decode(errors="replace").strip()
+    require(done.returncode != 3, 33, message)
+    if done.returncode != 0:
+        raise RuntimeError(f"draco_corners ended with {done.returncode}: {message}")
     return json.loads(done.stdout)
 
 
