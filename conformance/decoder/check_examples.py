@@ -16,9 +16,10 @@ try:
 
     from sacdec import group_structure, harmonics, mixing, residuals, shape, vertices
     from sacdec.byte_reader import ByteReader
+    from sacdec.end_packet import End, Index, parse_end
     from sacdec.errors import StreamError
     from sacdec.limits import Limits
-    from sacdec.packets import read_packet, read_records
+    from sacdec.packets import END, read_packet, read_records
     from sacdec.range_coder import BitModel, RangeDecoder, SignedModels, UnsignedModels
     from sacdec.reconstruction import deformation_gradients
     from sacdec.stream import decode_stream
@@ -70,7 +71,18 @@ class Bytes(unittest.TestCase):
         for frames, text in pairs("packet"):
             reader = ByteReader(bytes.fromhex(text), end_rule=5, varint_rule=2)
             kind, payload = read_packet(reader, Limits())
-            self.assertEqual((kind, payload, reader.remaining()), (3, bytes([int(frames)]), 0))
+            self.assertEqual((kind, reader.remaining()), (END, 0))
+            self.assertEqual(parse_end(payload, reader.position), End(int(frames), None))
+
+    def test_index(self) -> None:
+        first, text = example("index")
+        words = first.split()
+        reader = ByteReader(bytes.fromhex(text.split("=")[1]), end_rule=5, varint_rule=2)
+        kind, payload = read_packet(reader, Limits())
+        self.assertEqual((kind, reader.remaining()), (END, 0))
+        groups = integers(words[5:])
+        index = Index(int(words[3]), list(zip(groups[::2], groups[1::2])))
+        self.assertEqual(parse_end(payload, reader.position), End(int(words[1]), index))
 
     def test_records(self) -> None:
         reader = ByteReader(b"".join(bytes.fromhex(text) for _, text in pairs("records")), end_rule=5, varint_rule=2)

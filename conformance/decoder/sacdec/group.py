@@ -21,6 +21,7 @@ class GroupHeader:
     """The first elements of a group's payload: spec.md 6. `code` is the range code of the frames."""
 
     frames: int
+    first_frame: int
     pyramid: int
     code: bytes
 
@@ -30,17 +31,19 @@ class GroupHeader:
 
 
 def parse_group(payload: bytes, header: SequenceHeader, limits: Limits) -> GroupHeader:
-    """spec.md 6, the payload of a group; rules R47, R48 and R50."""
+    """spec.md 6, the payload of a group; rules R47 to R50."""
     reader = ByteReader(payload, end_rule=47, varint_rule=47)
     frames = reader.varint()
+    first_frame = reader.varint()
+    require(first_frame + frames < 2**32, 49, "2^32 frames or more")
     if frames == 0:
         require(reader.remaining() == 0, 47, "bytes follow the beginning of an open group")
-        return GroupHeader(0, 1, b"")
+        return GroupHeader(0, first_frame, 1, b"")
     pyramid = reader.varint()
     require(pyramid >= 1, 47, "pyramid is 0")
     require(header.reference_shape == 0 or pyramid == 1, 50, "reference_shape is 1 and pyramid is not")
     require(frames <= limits.frames_per_group, 48, f"a group of {frames} frames")
-    return GroupHeader(frames, pyramid, reader.rest())
+    return GroupHeader(frames, first_frame, pyramid, reader.rest())
 
 
 @dataclass(frozen=True)

@@ -9,6 +9,7 @@ import numpy as np
 from . import harmonics
 from .byte_reader import ByteReader
 from .draco_mesh import decode_draco_mesh
+from .end_packet import index_of_groups, parse_end
 from .errors import require
 from .group import CodedFrame, GroupDecoder, PlaneRows, parse_group, plane_rows
 from .group_structure import chain_slot, group_structure
@@ -44,31 +45,48 @@ class StreamDecoder:
 
     def __init__(self, limits: Limits) -> None:
         self.limits = limits
+        self.start: dict[int, bytes] = {}  # payloads of the first sequence header and the first I-frame
         self.header: SequenceHeader | None = None
         self.clip: Clip | None = None
         self.rows: PlaneRows | None = None
         self.reconstruction: Reconstruction | None = None
+        self.group_begins: list[int] = []  # bytes of the stream before each group's packet
+        self.group_frames: list[int] = []
 
     def decode(self, data: bytes) -> Clip:
         """spec.md 3: the packets of a stream in turn."""
         reader = stream_reader(data)
+        before = None  # the type of the packet before
         while True:
+            begin = reader.position
             kind, payload = read_packet(reader, self.limits)
+            if before == SEQUENCE_HEADER:
+                require(kind == I_FRAME, 6, "a sequence header without an I-frame")
             if kind == SEQUENCE_HEADER:
-                require(self.header is None, 6, "a second sequence header")
-                self.header = parse_sequence_header(payload, self.limits)
+                if self._is_first(kind, payload, 6):
+                    self.header = parse_sequence_header(payload, self.limits)
             elif kind == I_FRAME:
-                require(self.header is not None, 7, "an I-frame before the sequence header")
-                require(self.clip is None, 7, "a second I-frame")
-                self._i_frame(payload)
+                require(before == SEQUENCE_HEADER, 7, "an I-frame that does not follow a sequence header")
+                if self._is_first(kind, payload, 7):
+                    self._i_frame(payload)
             elif kind == GROUP:
                 require(self.clip is not None, 8, "a group before the I-frame")
+                self.group_begins.append(begin)
                 self._group(payload, reader)
             else:
                 require(self.clip is not None, 9, "the end before the I-frame")
-                self._end(payload)
+                self._end(payload, begin, reader.position)
                 require(reader.remaining() == 0, 10, "bytes after the end")
                 return self.clip
+            before = kind
+
+    def _is_first(self, kind: int, payload: bytes, rule: int) -> bool:
+        """spec.md 3, "The start": whether this is the first sequence header or I-frame; others must be equal to it."""
+        if kind in self.start:
+            require(payload == self.start[kind], rule, "a start that is not the first one again")
+            return False
+        self.start[kind] = payload
+        return True
 
     def _i_frame(self, payload: bytes) -> None:
         """spec.md 5, and what is derived from it once: the basis (6.4)."""
@@ -97,29 +115,28 @@ class StreamDecoder:
     def _group(self, payload: bytes, reader: ByteReader) -> None:
         """spec.md 6; an open group's records follow the packet."""
         group = parse_group(payload, self.header, self.limits)
+        before = len(self.clip.frames)
+        require(group.first_frame == before, 66, f"a group from frame {group.first_frame}, not {before}")
         decoder = GroupDecoder(self.header, self.rows)
         if group.is_open:
             self._output(self._open_frames(decoder, reader))
-            return
-        values = group.frames * self.rows.coefficients()
-        require(values <= self.limits.group_values, 63, f"a group of {values} coefficients")
-        self._require_room(group.frames)
-        code = RangeDecoder(group.code, rule=56)
-        coded = [decoder.decode_frame(code, slot) for slot in group_structure(group.frames, group.pyramid)]
-        code.finish()
-        self._output(sorted(coded, key=lambda frame: frame.display))
+        else:
+            values = group.frames * self.rows.coefficients()
+            require(values <= self.limits.group_values, 63, f"a group of {values} coefficients")
+            code = RangeDecoder(group.code, rule=56)
+            coded = [decoder.decode_frame(code, slot) for slot in group_structure(group.frames, group.pyramid)]
+            code.finish()
+            self._output(sorted(coded, key=lambda frame: frame.display))
+        self.group_frames.append(len(self.clip.frames) - before)
 
     def _open_frames(self, decoder: GroupDecoder, reader: ByteReader) -> Iterator[CodedFrame]:
         """spec.md 3.1 and 6.2: "In an open group each frame is a range code of its own"."""
         for index, frame in enumerate(read_records(reader, self.limits)):
-            self._require_room(1)
+            require(len(self.clip.frames) + 1 < 2**32, 49, "2^32 frames or more")
             code = RangeDecoder(frame, rule=56)
             coded = decoder.decode_frame(code, chain_slot(index))
             code.finish()
             yield coded
-
-    def _require_room(self, frames: int) -> None:
-        require(len(self.clip.frames) + frames < 2**32, 49, "2^32 frames or more")
 
     def _output(self, frames: Iterator[CodedFrame] | list[CodedFrame]) -> None:
         """The frames of a group, in display order."""
@@ -127,12 +144,13 @@ class StreamDecoder:
             self.clip.coefficients_crc32 = zlib.crc32(coded.checked_bytes(), self.clip.coefficients_crc32)
             self.clip.frames.append(self.reconstruction.frame(coded))
 
-    def _end(self, payload: bytes) -> None:
-        """spec.md 3: the number of frames."""
-        reader = ByteReader(payload, end_rule=58, varint_rule=58)
-        frames = reader.varint()
-        require(reader.remaining() == 0, 58, "bytes after the number of frames")
-        require(frames == len(self.clip.frames), 59, f"{len(self.clip.frames)} frames, {frames} expected")
+    def _end(self, payload: bytes, begin: int, behind: int) -> None:
+        """spec.md 3.2: the number of frames and, if there is one, the index; the packet is the bytes from `begin` to
+        before `behind`."""
+        end = parse_end(payload, behind - begin)
+        require(end.frames == len(self.clip.frames), 59, f"{len(self.clip.frames)} frames, {end.frames} expected")
+        index = index_of_groups(self.group_begins, self.group_frames, begin)
+        require(end.index is None or end.index == index, 67, "the index is not that of the stream")
 
 
 def decode_stream(data: bytes, limits: Limits = Limits()) -> Clip:
