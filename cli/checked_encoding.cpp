@@ -53,7 +53,8 @@ Status CheckedEncoding::Search() {
     return RunTrial(
         clip, [&progress](std::uint32_t count) { progress.FramesDone(count); }, trial);
   };
-  const Status status = SearchTargets(settings_.targets, settings_.encoder, run, best);
+  const Status status = SearchTargets(settings_.targets, settings_.encoder,
+                                      static_cast<std::uint32_t>(clip.mesh->positions.size()), run, best);
   SAC_RETURN_IF_ERROR(input_status);
   SAC_RETURN_IF_ERROR(AtInput("", status));
   settings_.encoder = best.settings;

@@ -92,6 +92,7 @@ Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, doubl
   json["frames"] = distortion.frames;
   json["vertices"] = header.vertices;
   json["triangles"] = header.triangles;
+  json["harmonics"] = header.harmonics;
   json["seconds"] = seconds;
   if (options.settings.targets.any()) json["trials"] = encoding.trials();
   const EncoderSettings& encoder = encoding.encoder_settings();
@@ -101,13 +102,13 @@ Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, doubl
   settings["target_bpvf"] = or_null(options.settings.targets.bpvf);
   settings["quality"] = encoder.quality;
   settings["fps"] = header.frame_rate_numerator == 0 ? Json() : Json(RateText(header));
-  settings["harmonics"] = encoder.harmonics;
+  settings["harmonics"] = or_null(encoder.harmonics);  // null: from the quality
   settings["samples_per_harmonic"] = encoder.samples_per_harmonic;
   settings["group"] = encoder.group;
   settings["pyramid"] = encoder.low_delay ? 1 : encoder.pyramid;
   settings["low_delay"] = encoder.low_delay;
   settings["reference"] = options.reference;
-  settings["motion_step"] = or_null(encoder.motion_step);  // null: from the quality
+  settings["motion_step"] = or_null(encoder.motion_step);
   settings["displacement_step"] = or_null(encoder.displacement_step);
   settings["detail_step"] = or_null(encoder.detail_step);
   settings["max_error"] = or_null(encoder.max_error);
@@ -132,8 +133,9 @@ void PrintText(const Json& json, const CheckedEncoding& encoding, std::FILE* fil
     const EncoderSettings& s = encoding.encoder_settings();
     std::fprintf(
         file,
-        "found in %u trials: --motion-step %.4g --displacement-step %.4g --detail-step %.4g --position-bits %.4g\n",
-        encoding.trials(), *s.motion_step, *s.displacement_step, *s.detail_step, *s.position_bits);
+        "found in %u trials: --motion-step %.4g --displacement-step %.4g --detail-step %.4g --position-bits %.5g "
+        "--harmonics %u\n",
+        encoding.trials(), *s.motion_step, *s.displacement_step, *s.detail_step, *s.position_bits, *s.harmonics);
   }
   std::fprintf(file, "%.2f seconds\n", json["seconds"].get<double>());
 }
@@ -192,7 +194,7 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
             "that takes more");
   AddFrameRate(app, encoder);
   AddNumber(app, "--harmonics", encoder.harmonics, 1u, Limits{}.harmonics,
-            "manifold harmonics over all components; time and memory grow with them [200]");
+            "manifold harmonics over all components; time and memory grow with them [from the quality]");
   AddNumber(
       app, "--samples-per-harmonic", encoder.samples_per_harmonic, 0u, 64u,
       "radial functions a harmonic that the basis is computed from; 0 for exact harmonics, which start slowly [2]");

@@ -3,7 +3,6 @@
 #include <cmath>
 
 #include "codec/encode/quality.h"
-#include "codec/encode/search/band.h"
 #include "codec/encode/search/target_search.h"
 #include "synth/synth.h"
 
@@ -24,9 +23,10 @@ class SynthSource {
     };
   }
 
-  Status Search(const RateTargets& targets, Trial& best) {
+  // 0 harmonics: as many as the search likes.
+  Status Search(const RateTargets& targets, Trial& best, std::uint32_t harmonics = 80) {
     EncoderSettings base;
-    base.harmonics = 40;
+    if (harmonics > 0) base.harmonics = harmonics;
     base.group = 20;
     trials = 0;
     const auto run = [this](Trial& trial) {
@@ -34,7 +34,7 @@ class SynthSource {
       return RunTrial(
           source_, [](std::uint32_t) {}, trial);
     };
-    return SearchTargets(targets, base, run, best);
+    return SearchTargets(targets, base, static_cast<std::uint32_t>(clip_.mesh().positions.size()), run, best);
   }
   Trial Run(const EncoderSettings& settings) {
     Trial trial;
@@ -55,7 +55,7 @@ class SynthSource {
 
 void ExpectReached(double figure, double target) {
   EXPECT_LE(figure, target);
-  EXPECT_GE(figure, 0.97 * target);
+  EXPECT_GE(figure, 0.95 * target);  // meshes as small as these scatter
 }
 
 struct Case {
@@ -63,34 +63,70 @@ struct Case {
   std::uint32_t vertices;
   std::array<double, 2> kg, sted, bpvf;
 };
-const std::array<Case, 2> kCases = {{{SynthKind::kFlag, 400, {2.5, 0.3}, {0.03, 0.015}, {3, 6}},
-                                     {SynthKind::kWalker, 2000, {2, 0.3}, {0.1, 0.03}, {0.5, 2}}}};
+const std::array<Case, 2> kCases = {{{SynthKind::kFlag, 1200, {2.5, 0.5}, {0.05, 0.02}, {1, 4}},
+                                     {SynthKind::kParts, 1000, {3, 0.5}, {0.06, 0.015}, {1, 3}}}};
 
 TEST(RateSearch, ReachesEachTargetAlone) {
   for (const Case& c : kCases) {
-    SynthSource clip(c.kind, c.vertices, 12);
+    SynthSource clip(c.kind, c.vertices, 16);
     for (std::size_t i = 0; i < 2; ++i) {
       SCOPED_TRACE(testing::Message() << static_cast<int>(c.kind) << " " << i);
       Trial best;
       Status status = clip.Search({c.kg[i], {}, {}}, best);
       ASSERT_TRUE(status.ok()) << status.message();
       ExpectReached(best.kg, c.kg[i]);
-      EXPECT_LE(clip.trials, 40);
+      EXPECT_LE(clip.trials, 24);
       status = clip.Search({{}, c.sted[i], {}}, best);
       ASSERT_TRUE(status.ok()) << status.message();
       ExpectReached(best.sted, c.sted[i]);
-      EXPECT_LE(clip.trials, 40);
+      EXPECT_LE(clip.trials, 24);
       status = clip.Search({{}, {}, c.bpvf[i]}, best);
       ASSERT_TRUE(status.ok()) << status.message();
       ExpectReached(best.bpvf, c.bpvf[i]);
-      EXPECT_LE(clip.trials, 40);
+      EXPECT_LE(clip.trials, 24);
     }
   }
 }
 
+// Coarse detail raises STED, which has two sides therefore.
+TEST(RateSearch, StaysOnTheSmallSideOfDetail) {
+  for (const auto& [kind, sted] : {std::pair{SynthKind::kParts, 0.06}, {SynthKind::kFlag, 0.04}}) {
+    SynthSource clip(kind, 1000, 24);
+    EncoderSettings settings;
+    settings.harmonics = 80;
+    settings.group = 20;
+    Trial smooth;
+    for (settings.quality = 0; settings.quality <= 60; settings.quality += 5) {
+      smooth = clip.Run(settings);
+      if (smooth.sted <= sted) break;
+    }
+    ASSERT_LE(smooth.sted, sted);
+    Trial best;
+    Status status = clip.Search({{}, sted, {}}, best);
+    ASSERT_TRUE(status.ok()) << status.message();
+    EXPECT_LE(best.sted, sted);
+    EXPECT_LE(best.bytes, smooth.bytes);
+    status = clip.Search({smooth.kg, {}, {}}, best);
+    ASSERT_TRUE(status.ok()) << status.message();
+    EXPECT_LE(best.kg, smooth.kg);
+    EXPECT_LE(static_cast<double>(best.bytes), 1.02 * static_cast<double>(smooth.bytes));
+  }
+}
+
+TEST(RateSearch, ChoosesHarmonicsUnlessTheyAreGiven) {
+  SynthSource clip(SynthKind::kWalker, 2200, 8);
+  Trial best;
+  ASSERT_TRUE(clip.Search({0.4, {}, {}}, best, 0).ok());
+  EXPECT_GT(*best.settings.harmonics, 200u);
+  EXPECT_LE(best.kg, 0.4);
+  SynthSource other(SynthKind::kFlag, 300, 4);
+  ASSERT_TRUE(other.Search({2.0, {}, {}}, best).ok());
+  EXPECT_EQ(*best.settings.harmonics, 80u);
+}
+
 TEST(RateSearch, ReachesKgAndStedTogether) {
   for (const Case& c : kCases) {
-    SynthSource clip(c.kind, c.vertices, 12);
+    SynthSource clip(c.kind, c.vertices, 16);
     SCOPED_TRACE(static_cast<int>(c.kind));
     Trial kg_alone, best;
     ASSERT_TRUE(clip.Search({c.kg[0], {}, {}}, kg_alone).ok());
@@ -101,7 +137,7 @@ TEST(RateSearch, ReachesKgAndStedTogether) {
       EXPECT_LE(best.kg, c.kg[0]);
       EXPECT_LE(best.sted, sted);
       EXPECT_TRUE(best.kg >= 0.97 * c.kg[0] || best.sted >= 0.97 * sted) << best.kg << " " << best.sted;
-      EXPECT_LE(clip.trials, 40);
+      EXPECT_LE(clip.trials, 24);
     }
   }
 }
@@ -157,13 +193,15 @@ TEST(RateSearch, QualityIsMonotone) {
   }
 }
 
+// With few harmonics to go by; with more, detail takes over from them and the smooth planes become coarser again.
 TEST(RateSearch, StepsOfQualitiesNeverGrow) {
-  QualitySettings last = SettingsOfQuality(0);
+  QualitySettings last = SettingsOfQuality(0, 200);
   for (double quality = 0.5; quality <= 100; quality += 0.5) {
-    const QualitySettings s = SettingsOfQuality(quality);
+    const QualitySettings s = SettingsOfQuality(quality, 200);
     EXPECT_LE(s.motion_step, last.motion_step) << quality;
     EXPECT_LE(s.displacement_step, last.displacement_step) << quality;
     EXPECT_GE(s.position_bits, last.position_bits) << quality;
+    EXPECT_EQ(s.harmonics, 200) << quality;
     if (last.detail_step > 0) {
       EXPECT_LE(s.detail_step, last.detail_step) << quality;
     }
@@ -171,24 +209,19 @@ TEST(RateSearch, StepsOfQualitiesNeverGrow) {
   }
 }
 
-TEST(Band, IsFoundOnCurvesOfAllKinds) {
-  const auto solve = [](const std::function<double(double)>& curve, double slope) {
-    double x = 3;
-    int evaluations = 0;
-    const auto evaluate = [&](double at, double& y) {
-      ++evaluations;
-      y = curve(at);
-      return Status::Ok();
-    };
-    EXPECT_TRUE(FindInBand({evaluate, slope, -100, 100, 14}, x).ok());
-    EXPECT_TRUE(InBand(curve(x))) << x;
-    EXPECT_LE(evaluations, 14);
-  };
-  solve([](double x) { return -0.03 * x; }, -0.03);
-  solve([](double x) { return -0.3 * (x + 50); }, -0.03);
-  solve([](double x) { return 0.01 * (x - 60); }, 0.03);
-  solve([](double x) { return std::exp(-x / 10) - 0.5; }, -0.03);
-  solve([](double x) { return x < 20 ? 1 - x / 100 : 0.2 - (x - 20) / 10; }, -0.03);  // a jump on the way
+TEST(RateSearch, HarmonicsOfQualitiesSuitTheMesh) {
+  for (const std::uint32_t vertices : {1u, 300u, 3000u, 10'000u, 50'000u, 1'000'000u}) {
+    const double most = MostHarmonics(vertices);
+    EXPECT_GE(most, 200);
+    EXPECT_LE(most, std::max(200.0, vertices / 8.0));
+    for (double quality = 0; quality <= 100; quality += 0.5) {
+      EXPECT_LE(SettingsOfQuality(quality, most).harmonics, most) << vertices << " " << quality;
+      EXPECT_LE(SmoothSettingsOfQuality(quality, most).harmonics, most) << vertices << " " << quality;
+      EXPECT_EQ(SmoothSettingsOfQuality(quality, most).detail_step, 0);
+    }
+    EXPECT_EQ(SettingsOfQuality(50, most).harmonics, 200);  // what starts quickly
+  }
+  EXPECT_GT(SettingsOfQuality(70, MostHarmonics(10'000)).harmonics, 500);
 }
 
 }  // namespace

@@ -28,7 +28,7 @@ constexpr std::uint32_t kLargePatch = 200, kSmallPatch = 64, kLargePatchVertices
 Status CheckSettings(const EncoderSettings& s) {
   const auto positive = [](const std::optional<double>& v) { return !v || (std::isfinite(*v) && *v > 0); };
   if (!(s.quality >= 0 && s.quality <= 100)) return Status::InvalidArgument("quality must be from 0 to 100");
-  if (s.harmonics == 0) return Status::InvalidArgument("at least one harmonic is needed");
+  if (s.harmonics && *s.harmonics == 0) return Status::InvalidArgument("at least one harmonic is needed");
   if (s.samples_per_harmonic > 64) return Status::InvalidArgument("a reduced basis has at most 64 samples a harmonic");
   if (s.group == 0 || s.group > Limits{}.frames_per_group) {
     return Status::InvalidArgument("a group holds from 1 to " + std::to_string(Limits{}.frames_per_group) + " frames");
@@ -166,7 +166,9 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   SAC_RETURN_IF_ERROR(CheckFinite(first.positions));
   settings_ = settings;
   const double rms = RmsRadius(first.positions);
-  QualitySettings defaults = SettingsOfQuality(settings.quality);
+  QualitySettings defaults = SettingsOfQuality(
+      settings.quality,
+      settings.harmonics ? *settings.harmonics : MostHarmonics(static_cast<std::uint32_t>(first.positions.size())));
   if (settings.max_error) {
     if (const double least = LeastMaxError(first.positions); *settings.max_error < least) {
       std::ostringstream message;
@@ -176,8 +178,8 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
     }
     header.correction_step = static_cast<float>(CorrectionStep(*settings.max_error, first.positions));
     const BoundedSettings bounded = SettingsOfMaxError(*settings.max_error, first.positions);
-    defaults = {settings.quality, bounded.motion_step, bounded.displacement_step / rms, bounded.detail_step / rms,
-                bounded.position_bits};
+    defaults = {settings.quality,          bounded.motion_step,   bounded.displacement_step / rms,
+                bounded.detail_step / rms, bounded.position_bits, bounded.harmonics};
   }
   const double displacement_step = settings.displacement_step.value_or(defaults.displacement_step);
   header.reference_shape = static_cast<std::uint8_t>(settings.reference_shape);
@@ -199,7 +201,8 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   IFrameSyntax syntax;
   DecodedIFrame decoded;
   SAC_RETURN_IF_ERROR(EncodeIFrameMesh(first, targets, header, syntax, decoded, order));
-  const std::vector<std::uint32_t> counts = ShareHarmonics(decoded.mesh, settings.harmonics);
+  const std::vector<std::uint32_t> counts = ShareHarmonics(
+      decoded.mesh, settings.harmonics.value_or(static_cast<std::uint32_t>(std::lround(defaults.harmonics))));
   for (const std::uint32_t c : counts) header.harmonics += c;
   syntax.harmonics = counts;
   SequenceHeader parsed;

@@ -14,10 +14,10 @@
 
 namespace sac {
 
-// Everything an encoder chooses. Steps and bits that are left out come from `quality`.
+// Everything an encoder chooses. Steps, bits and harmonics that are left out come from `quality`.
 struct EncoderSettings {
   double quality = 50;                     // 0 (smallest) to 100 (nearest to the input)
-  std::uint32_t harmonics = 200;           // over all components; at least one each, at most the vertices
+  std::optional<std::uint32_t> harmonics;  // over all components; at least one each, at most the vertices
   std::uint32_t samples_per_harmonic = 2;  // of the reduced basis (docs/decisions.md); 0: exact harmonics
   std::uint32_t group = 128;               // frames between points of random access
   std::uint32_t pyramid = 16;              // frames of a hierarchy of B-frames; 1: P-frames only

@@ -73,7 +73,8 @@ BoundedSettings SettingsOfMaxError(double max_error, const Positions& first_fram
   // Below this, detail could not reach across the shape (a residual is 2^20 steps at most); the rest is for
   // corrections.
   if (bound < 1e-6) detail = std::max(detail, 2.7e-5 * diagonal);
-  return {0.02 * finer, 1.3e-4 * diagonal * finer, detail, std::clamp(std::ceil(0.5 - std::log2(bound)), 7.0, 20.0)};
+  return {0.02 * finer, 1.3e-4 * diagonal * finer, detail, std::clamp(std::ceil(0.5 - std::log2(bound)), 7.0, 20.0),
+          200};
 }
 
 }  // namespace sac

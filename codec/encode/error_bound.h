@@ -31,6 +31,7 @@ struct BoundedSettings {
   double displacement_step;  // model units
   double detail_step;        // model units
   double position_bits;
+  double harmonics;
 };
 BoundedSettings SettingsOfMaxError(double max_error, const Positions& first_frame);
 

@@ -1,41 +1,78 @@
 #include "codec/encode/quality.h"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 namespace sac {
 namespace {
 
 // docs/quality.md has the figures these rows give. Detail sets in where the smooth planes buy nothing more.
-constexpr std::array<QualitySettings, 9> kTable = {{
-    {0, 0.15, 0.008, 0, 7.4},
-    {10, 0.08, 0.004, 0, 8.4},
-    {25, 0.05, 0.0022, 0, 9.3},
-    {50, 0.03, 0.0012, 0, 10.3},
-    {60, 0.02, 0.0006, 0, 11.3},
-    {70, 0.02, 0.0005, 0.01, 11.6},
-    {80, 0.02, 0.0005, 0.005, 12},
-    {90, 0.02, 0.0005, 0.002, 12.6},
-    {100, 0.015, 0.0004, 0.0004, 14.4},
+constexpr std::array<QualitySettings, 11> kTable = {{
+    {0, 0.15, 0.008, 0, 7.4, 200},
+    {10, 0.08, 0.004, 0, 8.4, 200},
+    {25, 0.05, 0.0022, 0, 9.3, 200},
+    {50, 0.03, 0.0012, 0, 10.3, 200},
+    {60, 0.02, 0.0006, 0, 11, 200},
+    {65, 0.018, 0.00035, 0, 11.25, 350},
+    {70, 0.015, 0.0002, 0, 11.5, 600},
+    {kDetailQuality, 0.015, 0.00012, 0, 11.7, 800},
+    {80, 0.02, 0.0005, 0.005, 12, 200},
+    {90, 0.02, 0.0005, 0.002, 12.6, 200},
+    {100, 0.015, 0.0004, 0.0004, 14.4, 200},
 }};
 
 // Before this part of the way from none to some, detail steps are so coarse that nothing would be coded.
 constexpr double kLeastDetail = 0.02;
 
-}  // namespace
+// Start time goes with vertices x harmonics^2, memory with their product.
+constexpr double kLeastCap = 200, kVerticesPerHarmonic = 8, kMostBasisValues = 12e6;
 
-QualitySettings SettingsOfQuality(double quality) {
-  std::size_t i = 1;
-  while (i + 1 < kTable.size() && kTable[i].quality < quality) ++i;
-  const QualitySettings &low = kTable[i - 1], &high = kTable[i];
+QualitySettings Between(const QualitySettings& low, const QualitySettings& high, double quality) {
   const double t = (quality - low.quality) / (high.quality - low.quality);
   // Steps matter by their ratio.
   const auto between = [t](double a, double b) {
-    if (a == 0) return t < kLeastDetail ? 0.0 : b / t;  // detail fades in from an infinite step
+    if (a == 0) return b == 0 || t < kLeastDetail ? 0.0 : b / t;  // detail fades in from an infinite step
     return a * std::pow(b / a, t);
   };
-  return {quality, between(low.motion_step, high.motion_step), between(low.displacement_step, high.displacement_step),
-          between(low.detail_step, high.detail_step), low.position_bits + t * (high.position_bits - low.position_bits)};
+  return {quality,
+          between(low.motion_step, high.motion_step),
+          between(low.displacement_step, high.displacement_step),
+          between(low.detail_step, high.detail_step),
+          low.position_bits + t * (high.position_bits - low.position_bits),
+          between(low.harmonics, high.harmonics)};
+}
+
+QualitySettings Interpolate(const std::vector<QualitySettings>& rows, double quality) {
+  std::size_t i = 1;
+  while (i + 1 < rows.size() && rows[i].quality < quality) ++i;
+  return Between(rows[i - 1], rows[i], quality);
+}
+
+}  // namespace
+
+double MostHarmonics(std::uint32_t vertices) {
+  const double n = vertices;
+  return std::max(kLeastCap, std::min({n / kVerticesPerHarmonic, kMostBasisValues / n, 1000.0}));
+}
+
+QualitySettings SettingsOfQuality(double quality, double most_harmonics) {
+  std::vector<QualitySettings> rows;
+  for (const QualitySettings& row : kTable) {
+    if (row.harmonics <= std::max(kLeastCap, most_harmonics)) rows.push_back(row);
+  }
+  return Interpolate(rows, quality);
+}
+
+QualitySettings SmoothSettingsOfQuality(double quality, double most_harmonics) {
+  std::vector<QualitySettings> rows;
+  for (const QualitySettings& row : kTable) {
+    if (row.detail_step == 0) rows.push_back(row);
+  }
+  QualitySettings settings = Interpolate(rows, quality);
+  settings.harmonics = std::min(settings.harmonics, std::max(kLeastCap, most_harmonics));
+  return settings;
 }
 
 }  // namespace sac

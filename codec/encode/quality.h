@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+
 namespace sac {
 
 // What one figure of quality stands for.
@@ -9,9 +11,21 @@ struct QualitySettings {
   double displacement_step;  // fraction of the RMS radius
   double detail_step;        // fraction of the RMS radius; 0: no detail plane
   double position_bits;      // log2 of the extent in the I-frame's steps
+  double harmonics;
 };
 
-// `quality` from 0 to 100: from a table measured on several clips (docs/quality.md), interpolated between its rows.
-QualitySettings SettingsOfQuality(double quality);
+// From here on there is detail; a little sooner where there are not enough harmonics for what comes before.
+inline constexpr double kDetailQuality = 75;
+
+// The most harmonics that pay in a mesh: in a small one they approach a code for every vertex, which detail does
+// better; in a large one decoders would take long to start. 200 at least.
+double MostHarmonics(std::uint32_t vertices);
+
+// `quality` from 0 to 100, and beyond with the last rows' ratios: from a table measured on several clips
+// (docs/quality.md), interpolated between those of its rows that have no more than `most_harmonics`, or 200.
+QualitySettings SettingsOfQuality(double quality, double most_harmonics);
+
+// The same without detail: beyond kDetailQuality the other steps become finer.
+QualitySettings SmoothSettingsOfQuality(double quality, double most_harmonics);
 
 }  // namespace sac

@@ -80,10 +80,11 @@ Status RunTrial(const ClipSource& clip, const std::function<void(std::uint32_t)>
   SAC_RETURN_IF_ERROR(measurement.Take(encoder->TakeBytes(), frame_done));
   DistortionMetrics distortion;
   SAC_RETURN_IF_ERROR(measurement.Finish(distortion, trial.bytes));
+  trial.parts = encoder->stream_bytes();
+  trial.vertices = static_cast<double>(encoder->header().vertices);
   trial.kg = distortion.kg;
   trial.sted = distortion.sted;
-  trial.bpvf = 8 * static_cast<double>(trial.bytes) /
-               (static_cast<double>(encoder->header().vertices) * static_cast<double>(distortion.frames));
+  trial.bpvf = 8 * static_cast<double>(trial.bytes) / (trial.vertices * static_cast<double>(distortion.frames));
   return Status::Ok();
 }
 

@@ -16,12 +16,24 @@ struct ClipSource {
   std::function<Status(Positions& frame, bool& end)> next;  // `end` is set, and `frame` left alone, after the last
 };
 
+// What of the settings a search chooses.
+struct OperatingPoint {
+  double motion_step = 0;        // radians and strain
+  double displacement_step = 0;  // fraction of the RMS radius
+  double detail_step = 0;        // fraction of the RMS radius; 0: no detail plane
+  double position_bits = 0;
+  double harmonics = 0;
+};
+
 // What an encoding with some settings came to.
 struct Trial {
   EncoderSettings settings;
+  OperatingPoint point;     // where the settings are from, if a search chose them
   std::uint64_t bytes = 0;  // of the whole stream
-  double bpvf = 0;          // bits a vertex and frame, of all bytes
-  double kg = 0;            // percent
+  StreamBytes parts;        // that add up to them
+  double vertices = 0;
+  double bpvf = 0;  // bits a vertex and frame, of all bytes
+  double kg = 0;    // percent
   double sted = 0;
 };
 

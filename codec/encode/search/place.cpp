@@ -1,0 +1,71 @@
+#include "codec/encode/search/place.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "codec/encode/quality.h"
+#include "format/limits.h"
+
+namespace sac {
+namespace {
+
+constexpr double kLeastBits = 4, kMostBits = 20;
+
+// docs/quality.md, means of clips.
+constexpr std::array<Typical, 10> kTypical = {{{0, 4.8, 0.22, 0.06},
+                                               {10, 2.9, 0.12, 0.085},
+                                               {25, 1.9, 0.075, 0.12},
+                                               {50, 1.35, 0.051, 0.16},
+                                               {60, 1, 0.042, 0.2},
+                                               {70, 0.55, 0.035, 0.29},
+                                               {75, 0.45, 0.033, 0.36},
+                                               {80, 0.2, 0.0325, 0.66},
+                                               {90, 0.1, 0.02, 1.2},
+                                               {100, 0.026, 0.007, 2.9}}};
+
+}  // namespace
+
+OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t fixed_harmonics,
+                       std::uint32_t vertices) {
+  const double most = fixed_harmonics > 0 ? fixed_harmonics : MostHarmonics(vertices);
+  QualitySettings s;
+  if (branch.detail) {
+    // Only rows of few harmonics, so that detail sets in early enough.
+    s = SettingsOfQuality(place.quality, 0);
+  } else {
+    s = SmoothSettingsOfQuality(place.quality, most);
+  }
+  double harmonics = fixed_harmonics;
+  if (fixed_harmonics == 0) {
+    harmonics = std::round(std::min(s.harmonics * std::exp(place.log_harmonics), most));
+    harmonics = std::clamp(harmonics, 1.0, static_cast<double>(Limits{}.harmonics));
+  }
+  // Beyond what docs and reports say, digits tell nothing.
+  return {s.motion_step * std::exp(place.log_motion), s.displacement_step, s.detail_step,
+          std::clamp(std::round(1e3 * (s.position_bits + place.more_bits)) / 1e3, kLeastBits, kMostBits), harmonics};
+}
+
+EncoderSettings SettingsOf(const OperatingPoint& point, double quality, const EncoderSettings& base) {
+  EncoderSettings s = base;
+  s.quality = std::clamp(quality, 0.0, 100.0);
+  s.harmonics = static_cast<std::uint32_t>(point.harmonics);
+  s.motion_step = point.motion_step;
+  s.displacement_step = point.displacement_step;
+  s.detail_step = point.detail_step;
+  s.position_bits = point.position_bits;
+  return s;
+}
+
+double TypicalQuality(double Typical::*figure, double target) {
+  const bool falls = kTypical.front().*figure > kTypical.back().*figure;
+  for (std::size_t i = 1; i < kTypical.size(); ++i) {
+    const double a = kTypical[i - 1].*figure, b = kTypical[i].*figure;
+    if (i + 1 < kTypical.size() && (falls ? b > target : b < target)) continue;
+    const double t = std::clamp(std::log(target / a) / std::log(b / a), -3.0, 3.0);
+    return kTypical[i - 1].quality + t * (kTypical[i].quality - kTypical[i - 1].quality);
+  }
+  return 50;
+}
+
+}  // namespace sac

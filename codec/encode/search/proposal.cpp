@@ -1,0 +1,68 @@
+#include "codec/encode/search/proposal.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+namespace sac {
+namespace {
+
+// How far predictions are trusted.
+struct Unknown {
+  double Place::*value;
+  double reach, least, most;
+};
+constexpr std::array<Unknown, 3> kUnknowns = {{{&Place::log_motion, 0.4, kFinestMotion, kCoarsestMotion},
+                                               {&Place::more_bits, 0.7, kLeastMoreBits, kMostMoreBits},
+                                               {&Place::log_harmonics, 0.25, -0.6, 0.6}}};
+constexpr double kPenalty = 1e3;
+
+// Gives `place` the quality at which the bound is just kept.
+double Settle(const ProposalProblem& problem, double low, double high, Place& place) {
+  const double good = problem.rises ? low : high, bad = problem.rises ? high : low;
+  place.quality = bad;
+  if (problem.excess(place) <= 0) return problem.cost(place);
+  place.quality = good;
+  if (const double excess = problem.excess(place); excess > 0) return kPenalty * (1 + excess);
+  double keeps = good, exceeds = bad;
+  for (int i = 0; i < 14; ++i) {
+    place.quality = (keeps + exceeds) / 2;
+    (problem.excess(place) <= 0 ? keeps : exceeds) = place.quality;
+  }
+  place.quality = keeps;
+  return problem.cost(place);
+}
+
+}  // namespace
+
+Place Propose(const ProposalProblem& problem, const Place& centre) {
+  const double low =
+      std::clamp(centre.quality - problem.quality_reach, problem.branch.least_quality, problem.branch.most_quality);
+  const double high =
+      std::clamp(centre.quality + problem.quality_reach, problem.branch.least_quality, problem.branch.most_quality);
+  const std::array<bool, 3> is_free{problem.free.motion, problem.free.bits, problem.free.harmonics};
+  Place best = centre;
+  double least = Settle(problem, low, high, best);
+  for (double step = 0.5; step > 0.01;) {  // of the reach
+    bool better = false;
+    for (std::size_t u = 0; u < kUnknowns.size(); ++u) {
+      if (!is_free[u]) continue;
+      const Unknown& unknown = kUnknowns[u];
+      const double from = std::max(problem.free.part * unknown.least, centre.*unknown.value - unknown.reach);
+      const double to = std::min(problem.free.part * unknown.most, centre.*unknown.value + unknown.reach);
+      for (const double direction : {-1.0, 1.0}) {
+        Place place = best;
+        place.*unknown.value = std::clamp(best.*unknown.value + direction * step * unknown.reach, from, to);
+        const double cost = Settle(problem, low, high, place);
+        if (cost >= least - 1e-6) continue;
+        least = cost;
+        best = place;
+        better = true;
+      }
+    }
+    if (!better) step /= 2;
+  }
+  return best;
+}
+
+}  // namespace sac
