@@ -114,7 +114,7 @@ TEST(RateSearch, StaysOnTheSmallSideOfDetail) {
 }
 
 TEST(RateSearch, ChoosesHarmonicsUnlessTheyAreGiven) {
-  SynthSource clip(SynthKind::kWalker, 2200, 8);
+  SynthSource clip(SynthKind::kWalker, 2600, 8);
   Trial best;
   ASSERT_TRUE(clip.Search({0.4, {}, {}}, best, 0).ok());
   EXPECT_GT(*best.settings.harmonics, 200u);
@@ -213,7 +213,7 @@ TEST(RateSearch, HarmonicsOfQualitiesSuitTheMesh) {
   for (const std::uint32_t vertices : {1u, 300u, 3000u, 10'000u, 50'000u, 1'000'000u}) {
     const double most = MostHarmonics(vertices);
     EXPECT_GE(most, 200);
-    EXPECT_LE(most, std::max(200.0, vertices / 8.0));
+    EXPECT_LE(most, std::max(200.0, vertices / 10.0));
     for (double quality = 0; quality <= 100; quality += 0.5) {
       EXPECT_LE(SettingsOfQuality(quality, most).harmonics, most) << vertices << " " << quality;
       EXPECT_LE(SmoothSettingsOfQuality(quality, most).harmonics, most) << vertices << " " << quality;

@@ -27,7 +27,7 @@ constexpr std::array<QualitySettings, 11> kTable = {{
 constexpr double kLeastDetail = 0.02;
 
 // Start time goes with vertices x harmonics^2, memory with their product.
-constexpr double kLeastCap = 200, kVerticesPerHarmonic = 8, kMostBasisValues = 12e6;
+constexpr double kLeastCap = 200, kVerticesPerHarmonic = 10, kMostBasisValues = 12e6;
 
 QualitySettings Between(const QualitySettings& low, const QualitySettings& high, double quality) {
   const double t = (quality - low.quality) / (high.quality - low.quality);
