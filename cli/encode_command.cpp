@@ -187,7 +187,7 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
   AddNumber(app, "--quality", o.quality, 0.0, 100.0, "0 (smallest) to 100 (nearest to the input) [50]");
   RateTargets& targets = o.settings.targets;
   AddNumber(app, "--target-kg", targets.kg, kLeastTarget, kLargestTarget,
-            "search for the smallest stream of at most this KG, percent; the clip is encoded several times");
+            "search for the smallest stream of at most this KG, percent: the clip is encoded 3 to 24 times");
   AddNumber(app, "--target-sted", targets.sted, kLeastTarget, kLargestTarget, "likewise of at most this STED");
   AddNumber(app, "--target-bpvf", targets.bpvf, kLeastTarget, kLargestTarget,
             "search for the best quality in at most so many bits a vertex and frame; with another target, fail where "

@@ -17,7 +17,7 @@ constexpr std::array<QualitySettings, 11> kTable = {{
     {60, 0.02, 0.0006, 0, 11, 200},
     {65, 0.018, 0.00035, 0, 11.25, 350},
     {70, 0.015, 0.0002, 0, 11.5, 600},
-    {kDetailQuality, 0.015, 0.00012, 0, 11.7, 800},
+    {kDetailQuality, 0.015, 0.00012, 0, 11.7, 750},
     {80, 0.02, 0.0005, 0.005, 12, 200},
     {90, 0.02, 0.0005, 0.002, 12.6, 200},
     {100, 0.015, 0.0004, 0.0004, 14.4, 200},
@@ -27,7 +27,7 @@ constexpr std::array<QualitySettings, 11> kTable = {{
 constexpr double kLeastDetail = 0.02;
 
 // Start time goes with vertices x harmonics^2, memory with their product.
-constexpr double kLeastCap = 200, kVerticesPerHarmonic = 10, kMostBasisValues = 12e6;
+constexpr double kLeastCap = 200, kVerticesPerHarmonic = 9, kMostBasisValues = 12e6;
 
 QualitySettings Between(const QualitySettings& low, const QualitySettings& high, double quality) {
   const double t = (quality - low.quality) / (high.quality - low.quality);

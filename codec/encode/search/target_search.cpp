@@ -36,8 +36,7 @@ class Search {
         base_(base),
         vertices_(vertices),
         run_(run),
-        free_{targets.kg && targets.sted, targets.sted || !targets.kg, !base.harmonics,
-              targets.kg && targets.sted ? 1.0 : 0.4} {}
+        free_{targets.kg && targets.sted, true, !base.harmonics, targets.kg && targets.sted ? 1.0 : 0.6} {}
 
   Status Run(Trial& best);
 
