@@ -8,8 +8,8 @@
 
 namespace sac {
 
-// Adaptive Exp-Golomb code of an unsigned integer below 2^31 (spec.md 7.3): the number of bits of value + 1 in unary,
-// each step with its own model, then the bits below the leading one as they are.
+// Adaptive Exp-Golomb code of an unsigned integer up to 2^32 - 2 (spec.md 7.3): the number of bits of value + 1 in
+// unary, each step with its own model, then the bits below the leading one as they are.
 struct UnsignedModels {
   std::array<BitModel, 32> prefix;
 };
@@ -18,7 +18,7 @@ template <class Coder>
 void CodeUnsigned(Coder& coder, UnsignedModels& models, std::uint32_t& value) {
   int width = 0;
   if constexpr (!Coder::kDecodes) {
-    while (((value + 1) >> (width + 1)) != 0) ++width;
+    while (width < 31 && ((value + 1) >> (width + 1)) != 0) ++width;
   }
   for (int i = 0; i < 31; ++i) {
     bool more = i < width;

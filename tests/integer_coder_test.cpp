@@ -8,7 +8,7 @@
 namespace sac {
 namespace {
 
-// Every power of two and its neighbours below 2^31.
+// Every power of two and its neighbours below 2^31, the ends of what se and ue can say.
 std::vector<std::uint32_t> Boundaries() {
   std::vector<std::uint32_t> values = {0};
   for (int i = 0; i < 31; ++i) {
@@ -20,7 +20,8 @@ std::vector<std::uint32_t> Boundaries() {
 }
 
 TEST(UnsignedCoder, ReturnsEveryMagnitude) {
-  const auto values = Boundaries();
+  auto values = Boundaries();
+  values.insert(values.end(), {0x7fffffff, 0x80000000, 0xfffffffe});
   RangeEncoder out;
   UnsignedModels written;
   for (std::uint32_t v : values) CodeUnsigned(out, written, v);
