@@ -199,6 +199,8 @@ void AddPackets(Collection& c) {
   c.ChangePackets("R24", "mesh_size", [](Packets& p) { p[1].second = {5, 'D', 'R'}; });
   c.ChangePackets("R24", "empty", [](Packets& p) { p[1].second.clear(); });
   c.ChangePackets("R30", "long", [](Packets& p) { p[1].second.insert(p[1].second.end(), {0, 0, 0, 0, 1}); });
+  c.ChangePackets("R30", "zero", [](Packets& p) { p[1].second.push_back(0); });
+  c.ChangePackets("R30", "other_end", [](Packets& p) { ++p[1].second.back(); });
   c.ChangePackets("R30", "short", [](Packets& p) { p[1].second.resize(p[1].second.size() - 9); });
   c.ChangePackets("R47", "no_frames", [](Packets& p) { p[2].second = {0, 0, 1}; });
   c.ChangePackets("R47", "no_pyramid", [](Packets& p) { p[2].second = {1, 0, 0}; });
@@ -208,6 +210,8 @@ void AddPackets(Collection& c) {
   c.ChangePackets("R66", "too_early", [](Packets& p) { p.insert(p.begin() + 3, p[2]); });
   c.ChangePackets("R49", "numbers", [](Packets& p) { p[2].second = WriteGroup({3, 0xfffffffeu, 1}, {}); });
   c.ChangePackets("R56", "long", [](Packets& p) { p[2].second.insert(p[2].second.end(), {0, 0, 0, 0, 1}); });
+  c.ChangePackets("R56", "zero", [](Packets& p) { p[2].second.push_back(0); });
+  c.ChangePackets("R56", "other_end", [](Packets& p) { p[2].second.push_back(1); });
   c.ChangePackets("R56", "short", [](Packets& p) { p[2].second.resize(5); });
 }
 
@@ -393,6 +397,7 @@ void AddDraco(Collection& c) {
   c.ChangeDraco("R37", "point", [](StreamParts& p) { p.i_frame.welds = {{6, 0}}; });
   c.ChangeDraco("R38", "positions",
                 [](StreamParts& p) { p.i_frame.positions.insert(p.i_frame.positions.end(), 5, 1); });
+  c.ChangeDraco("R38", "zero", [](StreamParts& p) { p.i_frame.positions.push_back(0); });
   c.ChangeDraco("R38", "short", [](StreamParts& p) { p.i_frame.positions.clear(); });
   const auto loose = [&](const char* name, const Bytes& bytes) {
     c.ChangeDraco("R39", name, [&](StreamParts& p) {

@@ -64,7 +64,17 @@ class TextDecoder {
     for (; n > 0; --n) value = value * 2 + static_cast<std::uint32_t>(Decide(range_ >> 1));
     return value;
   }
-  bool AtEnd() const { return position_ >= bytes_.size() && position_ <= bytes_.size() + 4; }
+  bool AtEnd() const {
+    if (position_ < bytes_.size() || position_ > bytes_.size() + 4) return false;
+    if (position_ < bytes_.size() + 4 && bytes_.back() == 0) return false;
+    std::uint64_t last = 0;
+    for (std::size_t i = position_ - 4; i < position_; ++i) last = last * 256 + (i < bytes_.size() ? bytes_[i] : 0);
+    const std::uint64_t low = (last - code_) & 0xffffffffu, value = low + code_;
+    std::uint64_t power = 1;
+    while (power < std::uint64_t{1} << 32 && value % (2 * power) == 0) power *= 2;
+    // No multiple of the next power in the range.
+    return code_ < range_ && (power >> 32 == 1 || (low + 2 * power - 1) / (2 * power) * (2 * power) - low >= range_);
+  }
 
  private:
   std::uint32_t Next() { return position_++ < bytes_.size() ? bytes_[position_ - 1] : 0; }

@@ -15,6 +15,16 @@ constexpr std::array<std::uint32_t, kYoung + 1> Rates(std::uint32_t floor) {
   for (std::uint32_t n = 0; n <= kYoung; ++n) rates[n] = std::max(131072 / (2 * n + 3), floor);
   return rates;
 }
+
+// The end of a code: of the integers from `low` to `low` + `range` - 1 the multiple of the greatest power of two. There
+// is one: of two next to each other, one is a multiple of the power above.
+std::uint64_t RoundestBetween(std::uint32_t low, std::uint32_t range) {
+  for (int bits = 32;; --bits) {
+    const std::uint64_t unit = std::uint64_t{1} << bits, value = (low + unit - 1) / unit * unit;
+    if (value - low < range) return value;
+  }
+}
+
 constexpr auto kFast = Rates(4096);  // 1/16
 constexpr auto kSlow = Rates(512);   // 1/128
 
@@ -70,14 +80,7 @@ void RangeEncoder::Raw(std::uint32_t& value, int count) {
 }
 
 std::vector<std::uint8_t> RangeEncoder::Finish() {
-  // Any number in [low, low + range) will do: the one with the most trailing zero bits leaves out the most bytes.
-  const std::uint64_t end = static_cast<std::uint64_t>(low_) + range_;
-  std::uint64_t value = low_;
-  for (int bits = 32; bits >= 0; --bits) {
-    const std::uint64_t unit = std::uint64_t{1} << bits;
-    value = (low_ + unit - 1) / unit * unit;
-    if (value < end) break;
-  }
+  const std::uint64_t value = RoundestBetween(low_, range_);
   Narrow(static_cast<std::uint32_t>(value - low_), range_);
   for (int shift = 24; shift >= 0; shift -= 8) bytes_.push_back(static_cast<std::uint8_t>(low_ >> shift));
   // Readers take four bytes at most after the end for zeros, those of this ending; zeros before it stay.
@@ -87,6 +90,16 @@ std::vector<std::uint8_t> RangeEncoder::Finish() {
 
 RangeDecoder::RangeDecoder(std::span<const std::uint8_t> bytes) : bytes_(bytes) {
   for (int i = 0; i < 4; ++i) code_ = (code_ << 8) | Next();
+}
+
+bool RangeDecoder::AtEnd() const {
+  if (!ok() || position_ < bytes_.size()) return false;
+  // An encoder leaves out the zeros among the last four bytes.
+  if (bytes_.size() + 4 > position_ && !bytes_.empty() && bytes_.back() == 0) return false;
+  std::uint32_t last = 0;
+  for (std::size_t i = position_ - 4; i < position_; ++i) last = (last << 8) | (i < bytes_.size() ? bytes_[i] : 0);
+  const std::uint32_t low = last - code_;
+  return std::uint64_t{low} + code_ == RoundestBetween(low, range_);
 }
 
 void RangeDecoder::Normalize() {

@@ -37,7 +37,7 @@ class RangeEncoder {
   void Raw(std::uint32_t& value, int count);
   bool ok() const { return true; }
 
-  // Ends the code with the fewest bytes and returns all of them; up to four zero bytes at the end are left out.
+  // Ends the code with the fewest bytes and returns all of them; the zeros among the last four are left out.
   std::vector<std::uint8_t> Finish();
   // Length of the code so far in bits, to account for its parts.
   double bits() const {
@@ -65,8 +65,8 @@ class RangeDecoder {
   void Decide(std::uint32_t p, bool& bit);
   void Raw(std::uint32_t& value, int count);
   bool ok() const { return position_ <= bytes_.size() + 4; }
-  // Whether the code ended where the bytes do: no byte was left unread.
-  bool AtEnd() const { return ok() && position_ >= bytes_.size(); }
+  // Whether the code ends where the bytes do, and as an encoder ends it (spec.md 7.1): no other bytes say the same.
+  bool AtEnd() const;
 
  private:
   std::uint8_t Next() {

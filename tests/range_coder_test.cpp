@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <random>
+#include <utility>
 
 namespace sac {
 namespace {
@@ -189,6 +191,41 @@ TEST(RangeCoder, NoticesMissingBytes) {
       }
     }
   }
+}
+
+// Whatever else the last bytes are, fewer or more: they say something else, or are refused.
+TEST(RangeCoder, HasOneSpelling) {
+  std::mt19937 random(11);
+  const auto refused = [](const Bytes& code, const std::vector<Item>& items) {
+    RangeDecoder coder(code);
+    return Decode(coder, items) < items.size() || !coder.AtEnd();
+  };
+  int ends = 0;
+  for (int i = 0; i < 300; ++i) {
+    const auto items = RandomItems(random, random() % 40);
+    const Bytes code = Encode(items);
+    ASSERT_FALSE(refused(code, items));
+    Bytes longer = code;
+    for (int zeros = 0; zeros < 6; ++zeros) {
+      longer.push_back(0);
+      EXPECT_TRUE(refused(longer, items));
+    }
+    for (int size = 1; size <= 5; ++size) {
+      longer = code;
+      for (int k = 0; k < size; ++k) longer.push_back(static_cast<std::uint8_t>(random()));
+      EXPECT_TRUE(refused(longer, items));
+    }
+    for (std::size_t last = 1; last <= std::min<std::size_t>(4, code.size()); ++last) {
+      for (int value = 0; value < 256; ++value) {
+        Bytes other = code;
+        if (std::exchange(other[other.size() - last], static_cast<std::uint8_t>(value)) == value) continue;
+        EXPECT_TRUE(refused(other, items));
+        RangeDecoder coder(other);
+        ends += Decode(coder, items) == items.size();  // the same items, and yet refused
+      }
+    }
+  }
+  EXPECT_GT(ends, 1000);
 }
 
 TEST(RangeCoder, NoticesSurplusBytes) {
