@@ -1,11 +1,12 @@
 #include "codec/decode/draco_mesh.h"
 
-#include <draco/compression/decode.h>
+#include <draco/compression/config/decoder_options.h>
 
 #include <exception>
 #include <memory>
 #include <string>
 
+#include "codec/decode/draco_decoder.h"
 #include "format/bytes.h"
 
 namespace sac {
@@ -102,11 +103,12 @@ Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& he
   try {  // Draco reports with a status, but allocates with new
     draco::DecoderBuffer buffer;
     buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    draco::Decoder decoder;
-    auto decoded = decoder.DecodeMeshFromBuffer(&buffer);
-    if (!decoded.ok()) return Status::Corrupt("I-frame: Draco: " + decoded.status().error_msg_string());
+    GuardedDracoDecoder decoder;
+    draco::Mesh decoded;
+    const draco::Status status = decoder.Decode(draco::DecoderOptions(), &buffer, &decoded);
+    if (!status.ok()) return Status::Corrupt("I-frame: Draco: " + status.error_msg_string());
     if (buffer.remaining_size() != 0) return Status::Corrupt("I-frame: bytes after the Draco mesh");
-    return Extract(*decoded.value(), mesh);
+    return Extract(decoded, mesh);
   } catch (const std::exception& e) {
     return Status::Corrupt(std::string("I-frame: Draco: ") + e.what());
   }
