@@ -2,20 +2,24 @@
 
 #include <Spectra/SymEigsShiftSolver.h>
 
+#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
-#include <Eigen/SparseCholesky>
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
 
 #include "codec/radial_functions.h"
+#include "codec/sparse_cholesky.h"
 
 namespace sac {
 namespace {
 
 constexpr double kInhomogeneity = 0.1;
 constexpr std::uint32_t kDenseSize = 96;  // up to here all eigenpairs at once are as quick as the wanted ones
+constexpr int kSpareVectors = 20;         // of Lanczos, beside two for each wanted one
+// Surfaces take 1 to 5 restarts; what is next to a long path, whose eigenvalues are all but equal, takes hundreds.
+constexpr int kUsualRestarts = 5, kMostRestarts = 300;
 
 // A fixed generic cubic of the coordinates scaled to [0, 1], within [-1, 1] (spec.md 6.4.2).
 double GenericCubic(const Eigen::Array3d& p) {
@@ -32,6 +36,14 @@ struct EigenPairs {
   Eigen::MatrixXd vectors;  // one column each, orthonormal
 };
 
+bool Factorize(SparseCholesky& solver, const Eigen::SparseMatrix<double>& matrix) {
+  return solver.Analyze(matrix) && solver.Factorize(matrix);
+}
+bool Factorize(Eigen::LLT<Eigen::MatrixXd>& solver, const Eigen::MatrixXd& matrix) {
+  solver.compute(matrix);
+  return solver.info() == Eigen::Success;
+}
+
 // (A - sigma I)^-1 by a Cholesky solver of A's kind, as Spectra's operation.
 template <class Matrix, class Solver>
 class ShiftSolve {
@@ -43,25 +55,25 @@ class ShiftSolve {
   void set_shift(double sigma) {
     Matrix shifted = matrix_;
     for (Eigen::Index i = 0; i < rows(); ++i) shifted.coeffRef(i, i) -= sigma;
-    solver_.compute(shifted);
+    ok_ = Factorize(solver_, shifted);
   }
   void perform_op(const double* in, double* out) const {
     Eigen::Map<Eigen::VectorXd>(out, rows()) = solver_.solve(Eigen::Map<const Eigen::VectorXd>(in, rows()));
   }
-  bool ok() const { return solver_.info() == Eigen::Success; }
+  bool ok() const { return ok_; }
 
  private:
   const Matrix& matrix_;
   Solver solver_;
+  bool ok_ = false;
 };
-using SparseShiftSolve =
-    ShiftSolve<Eigen::SparseMatrix<double>, Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower>>;
+using SparseShiftSolve = ShiftSolve<Eigen::SparseMatrix<double>, SparseCholesky>;
 using DenseShiftSolve = ShiftSolve<Eigen::MatrixXd, Eigen::LLT<Eigen::MatrixXd>>;
 
 // The `count` smallest eigenpairs of a symmetric, positive semidefinite matrix given by its lower triangle.
 template <class Operation, class Matrix>
 bool SmallestEigenpairs(const Matrix& lower, std::uint32_t count, EigenPairs& out) {
-  const Eigen::Index n = lower.rows(), wanted = count, basis = std::min<Eigen::Index>(2 * wanted + 20, n);
+  const Eigen::Index n = lower.rows(), wanted = count, basis = std::min<Eigen::Index>(2 * wanted + kSpareVectors, n);
   if (n <= kDenseSize || basis == n) {
     const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(lower)};
     if (solver.info() != Eigen::Success) return false;
@@ -75,7 +87,7 @@ bool SmallestEigenpairs(const Matrix& lower, std::uint32_t count, EigenPairs& ou
   Eigen::VectorXd start(n);
   for (Eigen::Index i = 0; i < n; ++i) start[i] = Generic(static_cast<std::uint32_t>(i));
   solver.init(start.data());
-  solver.compute(Spectra::SortRule::LargestMagn, 1000, 1e-13, Spectra::SortRule::SmallestAlge);
+  solver.compute(Spectra::SortRule::LargestMagn, kMostRestarts, 1e-13, Spectra::SortRule::SmallestAlge);
   if (solver.info() != Spectra::CompInfo::Successful) return false;
   out = {solver.eigenvalues(), solver.eigenvectors()};
   return true;
@@ -96,8 +108,8 @@ bool ExactHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::V
 bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, EigenPairs& pairs) {
   Eigen::SparseMatrix<double> shifted = laplacian;
   for (Eigen::Index i = 0; i < shifted.rows(); ++i) shifted.coeffRef(i, i) += mass[i];
-  const Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver(shifted);
-  if (solver.info() != Eigen::Success) return false;
+  SparseCholesky solver;
+  if (!Factorize(solver, shifted)) return false;
   const Eigen::MatrixXd weighted = mass.asDiagonal() * pairs.vectors;
   const Eigen::MatrixXd image = solver.solve(weighted);
   // With (L + D) Y = D H, Y^T L Y = Y^T D H - Y^T D Y.
@@ -150,10 +162,13 @@ bool ComputeComponent(const EdgeList& edges, std::span<const double> weights, co
 
   const std::uint64_t samples = static_cast<std::uint64_t>(samples_per_harmonic) * count;
   Eigen::SparseMatrix<double> functions;
-  if (samples > 0 && samples < c.count) functions = RadialFunctions(points, static_cast<std::uint32_t>(samples));
+  if (count > 1 && samples > 0 && samples < c.count)
+    functions = RadialFunctions(points, static_cast<std::uint32_t>(samples));
   EigenPairs pairs;
-  if (!(functions.cols() > 0 ? ReducedHarmonics(laplacian, mass, functions, count, pairs)
-                             : ExactHarmonics(laplacian, mass, count, pairs))) {
+  if (count == 1) {
+    pairs = {Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Ones(c.count, 1)};
+  } else if (!(functions.cols() > 0 ? ReducedHarmonics(laplacian, mass, functions, count, pairs)
+                                    : ExactHarmonics(laplacian, mass, count, pairs))) {
     return false;
   }
   out.eigenvalues = pairs.values.cwiseMax(0);
@@ -189,6 +204,15 @@ std::array<float, 2> HarmonicBasis::Fingerprint() const {
 
 bool SameFingerprint(const std::array<float, 2>& a, const std::array<float, 2>& b) {
   return std::abs(a[0] - b[0]) <= 1e-5f * std::abs(a[0]) + 1e-6f && std::abs(a[1] - b[1]) <= 1e-5f;
+}
+
+double HarmonicsWork(double vertices, double harmonics, double samples) {
+  if (harmonics == 1) return vertices;
+  const bool reduced = samples > 0 && samples < vertices;
+  const double n = reduced ? samples : vertices, basis = 2 * harmonics + kSpareVectors;
+  const double products = reduced ? 10 * vertices * (harmonics * harmonics + samples) : 0;
+  if (n <= kDenseSize || basis >= n) return products + 10 * n * n * n;
+  return products + kUsualRestarts * basis * n * (reduced ? basis + n : basis);
 }
 
 Status ComputeHarmonics(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,

@@ -13,9 +13,9 @@ bool PoissonSystem::SetReference(const PositionMatrix& reference, std::vector<do
   // Every component is free to move as a whole: tie its first vertex to the origin, Solve() moves it afterwards.
   const double tie = std::max(matrix_.diagonal().mean(), 1.0);
   for (const Component& c : shape_.components) matrix_.coeffRef(c.first, c.first) += tie;
-  if (!std::exchange(analyzed_, true)) solver_.analyzePattern(matrix_);
-  solver_.factorize(matrix_);
-  return solver_.info() == Eigen::Success;
+  if (!analyzed_) analyzed_ = solver_.Analyze(matrix_);
+  if (!analyzed_) return false;
+  return solver_.Factorize(matrix_);
 }
 
 const PositionMatrix& PoissonSystem::Solve(const DeformationGradients& gradients) {

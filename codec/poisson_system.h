@@ -1,11 +1,11 @@
 #pragma once
 
 #include <Eigen/Core>
-#include <Eigen/SparseCholesky>
 #include <span>
 #include <vector>
 
 #include "codec/shape.h"
+#include "codec/sparse_cholesky.h"
 
 namespace sac {
 
@@ -30,7 +30,7 @@ class PoissonSystem {
   PositionMatrix reference_;
   std::vector<double> weights_;
   Eigen::SparseMatrix<double> matrix_;
-  Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> solver_;
+  SparseCholesky solver_;
   bool analyzed_ = false;
   PositionMatrix right_side_;
   PositionMatrix solution_;

@@ -1,22 +1,61 @@
 #include "codec/shape.h"
 
+#include <algorithm>
 #include <string>
 #include <utility>
+
+#include "codec/sparse_cholesky.h"
 
 namespace sac {
 
 namespace {
 
-// Multiplications that the harmonics of a component take, about: a dense problem of its vertices or samples, and the
-// products with its vertices.
-double BasisWork(double vertices, double harmonics, double samples) {
-  const bool reduced = samples > 0 && samples < vertices;
-  const bool dense = 2 * harmonics + 20 >= vertices;
-  const double size = reduced ? samples : dense ? vertices : 0;
-  return size * size * size + 10 * vertices * harmonics * harmonics;
+// Judges the sizes of the harmonics, and adds up their work.
+Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> components,
+                      std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic, const Limits& limits,
+                      double& work) {
+  std::uint64_t values = 0;
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0 || counts[i] > components[i].count) {
+      return Status::Corrupt("I-frame: more harmonics than vertices in a component");
+    }
+    if (counts[i] > limits.harmonics) return Status::Limit("more harmonics in a component than the limit");
+    values += static_cast<std::uint64_t>(counts[i]) * components[i].count;
+    work += HarmonicsWork(components[i].count, counts[i], static_cast<double>(samples_per_harmonic) * counts[i]);
+  }
+  if (header.detail_step > 0) {
+    work += 10.0 * header.patch_size * header.patch_size * header.vertices;
+    values += static_cast<std::uint64_t>(header.patch_size) * header.vertices;
+  }
+  if (work > limits.basis_work) return Status::Limit("the harmonic basis takes more work than the limit");
+  if (values > limits.basis_values) return Status::Limit("the harmonic basis is larger than the limit");
+  return Status::Ok();
+}
+
+// Judges what the sparse linear systems take: one of the mesh, two of its parts, and in each frame against the one
+// before another.
+Status CheckSystems(const SequenceHeader& header, const Limits& limits, Shape& shape) {
+  const auto vertices = static_cast<std::uint32_t>(shape.vertices());
+  const FactorSize most{limits.factor_values, (limits.basis_work - shape.work) / 3};
+  SparseCholesky probe;
+  if (!probe.Analyze(LaplacianMatrix(shape.edges.ends, shape.weights, 0, vertices), most)) {
+    return Status::Limit("the mesh is too entangled: its linear system takes more work or memory than the limit");
+  }
+  shape.work += 3 * probe.size().work;
+  double frame = 6.0 * static_cast<double>(probe.size().values);
+  for (const PlaneLayout& layout : {shape.layouts[kMotion], shape.layouts[kDisplacement]}) {
+    frame += static_cast<double>(layout.size()) * vertices;
+  }
+  if (header.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious)) frame += probe.size().work;
+  if (frame > limits.frame_work) return Status::Limit("a frame takes more work than the limit");
+  return Status::Ok();
 }
 
 }  // namespace
+
+double AllowedWork(const Limits& limits, std::size_t i_frame_bytes) {
+  return std::min(limits.basis_work, limits.free_work + limits.work_per_byte * static_cast<double>(i_frame_bytes));
+}
 
 Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<const std::uint32_t> counts,
                   std::uint32_t samples_per_harmonic, const Limits& limits, Shape& shape) {
@@ -24,20 +63,8 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
     return Status::Corrupt("I-frame: " + std::to_string(mesh.components.size()) + " components, but harmonics for " +
                            std::to_string(counts.size()));
   }
-  std::uint64_t values = 0;
-  double work = 0;
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] == 0 || counts[i] > mesh.components[i].count) {
-      return Status::Corrupt("I-frame: more harmonics than vertices in a component");
-    }
-    if (counts[i] > limits.harmonics) return Status::Limit("more harmonics in a component than the limit");
-    values += static_cast<std::uint64_t>(counts[i]) * mesh.components[i].count;
-    work += BasisWork(mesh.components[i].count, counts[i], static_cast<double>(samples_per_harmonic) * counts[i]);
-  }
-  if (header.detail_step > 0) work += 10.0 * header.patch_size * header.patch_size * header.vertices;
-  if (work > limits.basis_work) return Status::Limit("the harmonic basis takes more work than the limit");
-  if (header.detail_step > 0) values += static_cast<std::uint64_t>(header.patch_size) * header.vertices;
-  if (values > limits.basis_values) return Status::Limit("the harmonic basis is larger than the limit");
+  shape.work = 0;
+  SAC_RETURN_IF_ERROR(CheckHarmonics(header, mesh.components, counts, samples_per_harmonic, limits, shape.work));
 
   shape.triangles = std::move(mesh.triangles);
   shape.components = std::move(mesh.components);
@@ -55,6 +82,7 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
   std::vector<std::uint32_t> patch_sizes;
   for (const Component& patch : mesh.patches) patch_sizes.push_back(patch.count);
   shape.layouts = LayOutPlanes(header, counts, patch_sizes);
+  SAC_RETURN_IF_ERROR(CheckSystems(header, limits, shape));
   if (header.detail_step > 0) {
     // Every vertex alike: a plain orthogonal basis of each patch.
     const Eigen::VectorXd alike = Eigen::VectorXd::Ones(shape.positions.rows());

@@ -37,13 +37,17 @@ struct Shape {
   HarmonicBasis basis;
   HarmonicBasis patch_basis;  // empty without a detail plane
   PlaneLayouts layouts;
+  double work = 0;  // multiplications that all this took, about
 
   std::size_t vertices() const { return static_cast<std::size_t>(positions.rows()); }
 };
 
+// What an I-frame packet of so many bytes may ask for (spec.md 9).
+double AllowedWork(const Limits& limits, std::size_t i_frame_bytes);
+
 // Builds the shape. `counts`: harmonics per component, one for each component of `mesh`, at most its vertices.
-// kLimit when the basis would hold more values than `limits` allows; kCorrupt when counts do not fit or the harmonics
-// do not converge.
+// kLimit when the basis or a frame would take more memory or work than `limits` allows, which is judged before either
+// is spent; kCorrupt when counts do not fit or the harmonics do not converge.
 Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<const std::uint32_t> counts,
                   std::uint32_t samples_per_harmonic, const Limits& limits, Shape& shape);
 

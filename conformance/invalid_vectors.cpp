@@ -354,6 +354,17 @@ void AddSideInformation(Collection& c) {
         p.groups.clear();
       },
       "limit");
+  c.Change("R45", "path", [](StreamParts& p) {  // a path, at one position: eigenvalues all but equal
+    p.header.vertices = 3000;
+    p.header.triangles = 2999;
+    p.header.harmonics = 2;
+    p.header.detail_step = p.header.correction_step = 0;
+    p.i_frame.loose_vertices.assign(3000, p.i_frame.loose_vertices[0]);
+    p.i_frame.loose_triangles.clear();
+    for (std::uint32_t v = 0; v + 1 < 3000; ++v) p.i_frame.loose_triangles.push_back({v, v + 1, v + 1});
+    p.i_frame.harmonics = {2};
+    p.groups.clear();
+  });
   i_frame(
       "R46", "eigenvalues", [](IFrameSyntax& s) { s.fingerprint[0] *= 1.001f; }, "unsupported");
   i_frame(
@@ -462,6 +473,11 @@ void AddGroups(Collection& c) {
       },
       1);
   c.ChangeGroup("R55", "motion", 17, 1, [](std::uint32_t, FrameSyntax& f) { f.planes[kMotion][0] = 1 << 20; });
+  c.Change("R57", "position", [](StreamParts& p) {
+    p.header.translation_step = 1e38f;
+    p.groups = {CodeGroup(p, 1, 1, [](std::uint32_t, FrameSyntax& f) { f.rigid[3] = 4; })};
+    p.frames = 1;
+  });
   c.ChangeGroup("R55", "rigid", 2, 1, [](std::uint32_t, FrameSyntax& f) { f.rigid[0] = -(1 << 27) - 1; });
 }
 

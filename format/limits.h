@@ -13,9 +13,15 @@ struct Limits {
   std::uint32_t frames_per_group = 4'096;
   std::uint32_t packet_bytes = 1u << 28;
   std::uint64_t group_values = 1u << 27;  // coefficients in all planes of a group together
-  double basis_work = 1e12;               // multiplications for all harmonics together, about (spec.md 9)
   std::uint64_t basis_values =
       1u << 28;  // doubles in all harmonics together: sum over components of vertices x harmonics
+  std::uint64_t factor_values = 1u << 28;  // of the factorized Laplacian, 12 bytes each
+  // Multiplications, about, for what is derived from the I-frame (spec.md 9): at most basis_work, and at most
+  // free_work + work_per_byte * the bytes of its packet.
+  double basis_work = 5e11;
+  double free_work = 4e10;
+  double work_per_byte = 4e6;
+  double frame_work = 1e11;  // likewise, for each frame
 };
 
 }  // namespace sac

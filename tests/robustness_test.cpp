@@ -239,10 +239,29 @@ TEST(Robustness, LimitsAreRespected) {
   EXPECT_EQ(with(&Limits::harmonics, 19u), StatusCode::kLimit);
   EXPECT_EQ(with(&Limits::basis_values, std::uint64_t{400}), StatusCode::kOk);
   EXPECT_EQ(with(&Limits::basis_values, std::uint64_t{399}), StatusCode::kLimit);
+  EXPECT_EQ(with(&Limits::factor_values, std::uint64_t{400}), StatusCode::kOk);
+  EXPECT_EQ(with(&Limits::factor_values, std::uint64_t{40}), StatusCode::kLimit);
+  EXPECT_EQ(with(&Limits::basis_work, 1e6), StatusCode::kOk);
+  EXPECT_EQ(with(&Limits::basis_work, 1e4), StatusCode::kLimit);
+  EXPECT_EQ(with(&Limits::frame_work, 1e5), StatusCode::kOk);
+  EXPECT_EQ(with(&Limits::frame_work, 1e3), StatusCode::kLimit);
   EXPECT_EQ(with(&Limits::frames_per_group, 3u), StatusCode::kOk);
   EXPECT_EQ(with(&Limits::frames_per_group, 2u), StatusCode::kLimit);
   EXPECT_EQ(with(&Limits::packet_bytes, static_cast<std::uint32_t>(longest)), StatusCode::kOk);
   EXPECT_EQ(with(&Limits::packet_bytes, static_cast<std::uint32_t>(longest - 1)), StatusCode::kLimit);
+}
+
+TEST(Robustness, WorkIsBoundedByBytes) {
+  const Bytes stream = Streams()[0];
+  const auto with = [&](double free, double per_byte) {
+    DecoderSettings settings;
+    settings.limits.free_work = free;
+    settings.limits.work_per_byte = per_byte;
+    return Decode(stream, stream.size(), settings).status.code();
+  };
+  EXPECT_EQ(with(1e6, 0), StatusCode::kOk);
+  EXPECT_EQ(with(1e3, 0), StatusCode::kLimit);
+  EXPECT_EQ(with(1e3, 1e4), StatusCode::kOk);
 }
 
 }  // namespace

@@ -74,8 +74,8 @@ class Decoder::Impl {
   Status Guard(const std::function<Status()>& step) {
     try {
       return Latch(step());
-    } catch (const std::exception& e) {
-      return Latch(Status::Limit(e.what()));
+    } catch (const std::exception&) {
+      return Latch(Status::Limit("out of memory"));  // short enough for a string that allocates nothing
     }
   }
 
@@ -214,8 +214,10 @@ Status Decoder::Impl::DecodeIFrame(std::span<const std::uint8_t> payload) {
   out.uv_triangles = std::move(decoded.uv_triangles);
   out.normals = std::move(decoded.normals);
   out.colors = std::move(decoded.colors);
-  SAC_RETURN_IF_ERROR(BuildShape(*header, std::move(decoded.mesh), syntax.harmonics, syntax.samples_per_harmonic,
-                                 settings.limits, shape_));
+  Limits limits = settings.limits;
+  limits.basis_work = AllowedWork(limits, payload.size());
+  SAC_RETURN_IF_ERROR(
+      BuildShape(*header, std::move(decoded.mesh), syntax.harmonics, syntax.samples_per_harmonic, limits, shape_));
   if (!SameFingerprint(shape_.basis.Fingerprint(), syntax.fingerprint)) {
     return Status::Unsupported("the harmonics computed here are not the encoder's");
   }

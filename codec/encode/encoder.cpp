@@ -214,10 +214,15 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   SAC_RETURN_IF_ERROR(
       BuildShape(header, std::move(decoded.mesh), counts, settings.samples_per_harmonic, Limits{}, shape_));
   syntax.fingerprint = shape_.basis.Fingerprint();
+  const std::vector<std::uint8_t> i_frame = WriteIFrame(syntax, header);
+  if (shape_.work > AllowedWork(Limits{}, i_frame.size())) {
+    return Status::Limit("so many harmonics take more work than decoders allow an I-frame of " +
+                         std::to_string(i_frame.size()) + " bytes");
+  }
   encoder_ = std::make_unique<GroupEncoder>(shape_, header, settings.max_error.value_or(0));
 
   writer.emplace(settings.index, settings.repeat_start);
-  writer->Start(WriteSequenceHeader(header), WriteIFrame(syntax, header));
+  writer->Start(WriteSequenceHeader(header), i_frame);
   return Status::Ok();
 }
 

@@ -31,8 +31,12 @@ inline Limits FuzzLimits() {
   limits.frames_per_group = 32;
   limits.packet_bytes = 1 << 16;
   limits.group_values = 1 << 17;
-  limits.basis_work = 1e7;
   limits.basis_values = 1 << 14;
+  limits.factor_values = 1 << 14;
+  limits.basis_work = 2e7;
+  limits.free_work = 1e7;
+  limits.work_per_byte = 1e4;
+  limits.frame_work = 1e6;
   return limits;
 }
 

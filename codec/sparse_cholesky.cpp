@@ -1,0 +1,44 @@
+#include "codec/sparse_cholesky.h"
+
+#include <vector>
+
+namespace sac {
+
+// As Eigen's symbolic factorization does (T. Davis, "Algorithm 849: a concise sparse Cholesky factorization package",
+// 2005): row k of the factor is what the paths from its entries to the root of the elimination tree pass.
+bool SparseCholesky::Count(const CholMatrixType& ordered, const FactorSize& most) {
+  size_ = {0, 0};
+  const auto n = static_cast<std::size_t>(ordered.cols());
+  std::vector<int> parent(n, -1), reached(n, -1);
+  std::vector<std::uint32_t> below(n, 0);  // values of each column so far
+  for (int k = 0; k < static_cast<int>(n); ++k) {
+    reached[static_cast<std::size_t>(k)] = k;
+    for (CholMatrixType::InnerIterator it(ordered, k); it; ++it) {
+      if (it.index() >= k) continue;
+      for (auto i = static_cast<std::size_t>(it.index()); reached[i] != k; i = static_cast<std::size_t>(parent[i])) {
+        if (parent[i] < 0) parent[i] = k;
+        reached[i] = k;
+        ++size_.values;
+        size_.work += 2.0 * ++below[i] + 1;
+      }
+    }
+    if (size_.values > most.values || size_.work > most.work) return false;
+  }
+  return true;
+}
+
+bool SparseCholesky::Analyze(const Matrix& matrix, const FactorSize& most) {
+  CholMatrixType storage(matrix.rows(), matrix.cols());
+  ConstCholMatrixPtr ordered = nullptr;
+  ordering(matrix, ordered, storage);
+  if (!Count(*ordered, most)) return false;
+  analyzePattern_preordered(*ordered, true);
+  return true;
+}
+
+bool SparseCholesky::Factorize(const Matrix& matrix) {
+  factorize(matrix);
+  return info() == Eigen::Success;
+}
+
+}  // namespace sac
