@@ -26,7 +26,7 @@ class [[nodiscard]] Status {
   const std::string& message() const { return message_; }
 
   static Status Ok() { return {}; }
-  static Status NeedMoreData() { return {StatusCode::kNeedMoreData, "more data needed"}; }
+  static Status NeedMoreData() { return {StatusCode::kNeedMoreData, "needs more data"}; }
   static Status InvalidArgument(std::string m) { return {StatusCode::kInvalidArgument, std::move(m)}; }
   static Status Unsupported(std::string m) { return {StatusCode::kUnsupported, std::move(m)}; }
   static Status Corrupt(std::string m) { return {StatusCode::kCorrupt, std::move(m)}; }

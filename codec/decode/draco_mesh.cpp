@@ -2,8 +2,8 @@
 
 #include <draco/compression/config/decoder_options.h>
 
-#include <exception>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "codec/decode/draco_decoder.h"
@@ -100,18 +100,18 @@ Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& he
   mesh = {};
   if (bytes.empty()) return Status::Ok();
   SAC_RETURN_IF_ERROR(CheckDracoHeader(bytes, header));
-  try {  // Draco reports with a status, but allocates with new
-    draco::DecoderBuffer buffer;
-    buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-    GuardedDracoDecoder decoder;
-    draco::Mesh decoded;
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  GuardedDracoDecoder decoder;
+  draco::Mesh decoded;
+  try {
     const draco::Status status = decoder.Decode(draco::DecoderOptions(), &buffer, &decoded);
     if (!status.ok()) return Status::Corrupt("I-frame: Draco: " + status.error_msg_string());
-    if (buffer.remaining_size() != 0) return Status::Corrupt("I-frame: bytes after the Draco mesh");
-    return Extract(decoded, mesh);
-  } catch (const std::exception& e) {
-    return Status::Corrupt(std::string("I-frame: Draco: ") + e.what());
+  } catch (const std::length_error&) {  // of a size that no vector has
+    return Status::Corrupt("I-frame: Draco: a size out of range");
   }
+  if (buffer.remaining_size() != 0) return Status::Corrupt("I-frame: bytes after the Draco mesh");
+  return Extract(decoded, mesh);
 }
 
 }  // namespace sac

@@ -1,0 +1,165 @@
+// Decodes with the n-th allocation failing, for one n after another: an error that says so, and nothing lost. A program
+// of its own, because it replaces operator new. spec.md 11, R60.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <new>
+#include <set>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "codec/decode/decoder.h"
+
+namespace {
+
+long g_until_failure = -1;  // allocations that still succeed; none fails while negative
+bool g_fail_on = false;     // and all after the first failure
+long g_allocations = 0;
+long g_living = 0;
+
+void* Allocate(std::size_t size, std::size_t alignment = 0) {
+  if (g_until_failure == 0) {
+    if (!g_fail_on) g_until_failure = -1;
+    return nullptr;
+  }
+  if (g_until_failure > 0) --g_until_failure;
+  ++g_allocations;
+  void* const memory = alignment > 0 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
+                                     : std::malloc(size > 0 ? size : 1);
+  if (memory) ++g_living;
+  return memory;
+}
+
+void* AllocateOrThrow(std::size_t size, std::size_t alignment = 0) {
+  void* const memory = Allocate(size, alignment);
+  if (!memory) throw std::bad_alloc();
+  return memory;
+}
+
+void Release(void* memory) noexcept {
+  if (!memory) return;
+  --g_living;
+  std::free(memory);
+}
+
+}  // namespace
+
+void* operator new(std::size_t size) { return AllocateOrThrow(size); }
+void* operator new[](std::size_t size) { return AllocateOrThrow(size); }
+void* operator new(std::size_t size, std::align_val_t a) { return AllocateOrThrow(size, static_cast<std::size_t>(a)); }
+void* operator new[](std::size_t size, std::align_val_t a) {
+  return AllocateOrThrow(size, static_cast<std::size_t>(a));
+}
+// For want of this memory std::stable_sort only gets slower.
+void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return Allocate(size); }
+void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return Allocate(size); }
+void operator delete(void* memory) noexcept { Release(memory); }
+void operator delete[](void* memory) noexcept { Release(memory); }
+void operator delete(void* memory, std::size_t) noexcept { Release(memory); }
+void operator delete[](void* memory, std::size_t) noexcept { Release(memory); }
+void operator delete(void* memory, std::align_val_t) noexcept { Release(memory); }
+void operator delete[](void* memory, std::align_val_t) noexcept { Release(memory); }
+void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { Release(memory); }
+void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { Release(memory); }
+void operator delete(void* memory, const std::nothrow_t&) noexcept { Release(memory); }
+void operator delete[](void* memory, const std::nothrow_t&) noexcept { Release(memory); }
+
+namespace sac {
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+Bytes Read(const char* file) {
+  std::ifstream in(std::filesystem::path(SAC_CONFORMANCE) / "valid" / file, std::ios::binary);
+  EXPECT_TRUE(in) << file;
+  const std::vector<char> text{std::istreambuf_iterator<char>(in), {}};
+  return {text.begin(), text.end()};
+}
+
+// Sends all of `stream` in two chunks, drops the frames.
+Status DecodeAll(Decoder& decoder, const Bytes& stream) {
+  DecodedFrame frame;
+  Status status;
+  const std::span<const std::uint8_t> all(stream);
+  for (std::span<const std::uint8_t> rest : {all.first(all.size() / 2), all.subspan(all.size() / 2)}) {
+    while (!rest.empty()) {
+      SAC_RETURN_IF_ERROR(decoder.Send(rest));
+      while ((status = decoder.Receive(frame)).ok()) {
+      }
+      if (status.code() != StatusCode::kNeedMoreData) return status;
+    }
+  }
+  return decoder.Finish();
+}
+
+struct Trial {
+  Status status;
+  bool made = false;   // the decoder
+  bool threw = false;  // an exception left the library
+  long allocations = 0;
+  long lost = 0;
+};
+
+// `fails`: how many allocations succeed before the one that fails, -1 for none; and all after it if `on`.
+Trial Try(const Bytes& stream, long fails, bool on) {
+  Trial trial;
+  const long living = g_living, before = g_allocations;
+  g_until_failure = fails;
+  g_fail_on = on;
+  try {
+    Decoder decoder;
+    trial.made = true;
+    trial.status = DecodeAll(decoder, stream);
+  } catch (const std::bad_alloc&) {
+    trial.threw = true;
+  }
+  g_until_failure = -1;
+  trial.allocations = g_allocations - before;
+  trial.lost = g_living - living;
+  return trial;
+}
+
+void FailEach(const char* file, long most_trials) {
+  SCOPED_TRACE(file);
+  const Bytes stream = Read(file);
+  (void)Try(stream, -1, false);  // what is made once
+  const Trial whole = Try(stream, -1, false);
+  ASSERT_TRUE(whole.status.ok());
+  ASSERT_EQ(whole.lost, 0);
+  ASSERT_GT(whole.allocations, 100);
+  const long stride = 1 + whole.allocations / most_trials;
+  long refused = 0, unharmed = 0;
+  for (long n = 0; n < whole.allocations; n += stride) {
+    for (const bool on : {false, true}) {
+      const Trial trial = Try(stream, n, on);
+      EXPECT_EQ(trial.lost, 0) << "allocation " << n;
+      EXPECT_EQ(trial.threw, !trial.made) << "allocation " << n;  // a constructor has no other way
+      if (!trial.made) continue;
+      if (!on && trial.status.ok()) {
+        ++unharmed;  // one of those that need not succeed
+        continue;
+      }
+      ++refused;
+      EXPECT_EQ(trial.status.code(), StatusCode::kLimit) << "allocation " << n << ": " << trial.status.message();
+      EXPECT_EQ(trial.status.message(), "out of memory");
+    }
+  }
+  EXPECT_GT(refused, 100);
+  EXPECT_LT(unharmed, refused / 4);
+}
+
+// Each allocation of streams without and with Draco, whole and open groups, exact and reduced harmonics.
+TEST(AllocationFailure, IsALimit) {
+  FailEach("small.sac", 2000);
+  FailEach("open_groups.sac", 300);
+  FailEach("odd.sac", 2000);
+  FailEach("previous_everything.sac", 400);
+  FailEach("exact.sac", 400);
+}
+
+}  // namespace
+}  // namespace sac
