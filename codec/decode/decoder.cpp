@@ -36,6 +36,16 @@ class Decoder::Impl {
   Status AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed);
   Status Interpolate(double time, Positions& positions, FrameInfo& info);
 
+  // Keeps exceptions in. They are want of memory: the limits allow more than there is.
+  template <class Call>
+  Status Contain(Call&& call) {
+    try {
+      return call();
+    } catch (const std::exception&) {
+      return Latch(Status::Limit("out of memory"));  // short enough for a string that allocates nothing
+    }
+  }
+
   const DecoderSettings settings;
   std::optional<SequenceHeader> header;
   std::optional<Mesh> mesh;
@@ -70,13 +80,9 @@ class Decoder::Impl {
     if (!status.ok()) error_ = status;
     return status;
   }
-  // Runs `step`; an exception is want of memory: the limits allow more than there is.
+  // Runs `step` and latches what goes wrong.
   Status Guard(const std::function<Status()>& step) {
-    try {
-      return Latch(step());
-    } catch (const std::exception&) {
-      return Latch(Status::Limit("out of memory"));  // short enough for a string that allocates nothing
-    }
+    return Contain([&] { return Latch(step()); });
   }
 
   PacketSource packets_;
@@ -429,15 +435,23 @@ Decoder::~Decoder() = default;
 Decoder::Decoder(Decoder&&) noexcept = default;
 Decoder& Decoder::operator=(Decoder&&) noexcept = default;
 
-Status Decoder::Send(std::span<const std::uint8_t>& bytes) { return impl_->Send(bytes); }
-Status Decoder::Receive(DecodedFrame& frame) { return impl_->Receive(frame.positions, frame); }
-Status Decoder::Interpolate(double time, DecodedFrame& frame) {
-  return impl_->Interpolate(time, frame.positions, frame);
+Status Decoder::Send(std::span<const std::uint8_t>& bytes) {
+  return impl_->Contain([&] { return impl_->Send(bytes); });
 }
-Status Decoder::Finish() { return impl_->Finish(); }
-Status Decoder::Seek(std::uint32_t frame, std::uint64_t& byte) { return impl_->Seek(frame, byte); }
+Status Decoder::Receive(DecodedFrame& frame) {
+  return impl_->Contain([&] { return impl_->Receive(frame.positions, frame); });
+}
+Status Decoder::Interpolate(double time, DecodedFrame& frame) {
+  return impl_->Contain([&] { return impl_->Interpolate(time, frame.positions, frame); });
+}
+Status Decoder::Finish() {
+  return impl_->Contain([&] { return impl_->Finish(); });
+}
+Status Decoder::Seek(std::uint32_t frame, std::uint64_t& byte) {
+  return impl_->Contain([&] { return impl_->Seek(frame, byte); });
+}
 Status Decoder::AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed) {
-  return impl_->AddIndex(tail, needed);
+  return impl_->Contain([&] { return impl_->AddIndex(tail, needed); });
 }
 void Decoder::Reset() { impl_ = std::make_unique<Impl>(impl_->settings); }
 const SequenceHeader* Decoder::header() const { return impl_->header ? &*impl_->header : nullptr; }
@@ -448,7 +462,7 @@ const std::vector<FrameRange>& Decoder::lost_frames() const { return impl_->lost
 Status Decoder::Receive(const FrameBuffers& buffers, FrameInfo& info) {
   if (mesh()) SAC_RETURN_IF_ERROR(CheckBuffers(buffers, mesh()->positions.size()));
   Positions positions;
-  SAC_RETURN_IF_ERROR(impl_->Receive(positions, info));
+  SAC_RETURN_IF_ERROR(impl_->Contain([&] { return impl_->Receive(positions, info); }));
   FillBuffers(positions, mesh()->triangles, info.box, buffers);
   return Status::Ok();
 }
@@ -456,7 +470,7 @@ Status Decoder::Receive(const FrameBuffers& buffers, FrameInfo& info) {
 Status Decoder::Interpolate(double time, const FrameBuffers& buffers, FrameInfo& info) {
   if (mesh()) SAC_RETURN_IF_ERROR(CheckBuffers(buffers, mesh()->positions.size()));
   Positions positions;
-  SAC_RETURN_IF_ERROR(impl_->Interpolate(time, positions, info));
+  SAC_RETURN_IF_ERROR(impl_->Contain([&] { return impl_->Interpolate(time, positions, info); }));
   FillBuffers(positions, mesh()->triangles, info.box, buffers);
   return Status::Ok();
 }

@@ -20,7 +20,9 @@ struct Outcome {
 // `chunks` draws their sizes, all bytes are one chunk without it.
 Outcome Decode(std::span<const std::uint8_t> stream, std::mt19937* chunks) {
   Outcome out;
-  Decoder decoder({FuzzLimits()});
+  DecoderSettings settings;
+  settings.limits = FuzzLimits();
+  Decoder decoder(settings);
   DecodedFrame frame;
   while (!stream.empty()) {
     const std::size_t size =
@@ -55,6 +57,33 @@ Outcome Decode(std::span<const std::uint8_t> stream, std::mt19937* chunks) {
   return out;
 }
 
+// Passing over damage.
+void DecodeAround(std::span<const std::uint8_t> stream, std::mt19937& chunks) {
+  DecoderSettings settings;
+  settings.limits = FuzzLimits();
+  settings.skip_damage = true;
+  Decoder decoder(settings);
+  DecodedFrame frame;
+  std::uint64_t next = 0;
+  const auto drain = [&] {
+    while (decoder.Receive(frame).ok()) {
+      FUZZ_REQUIRE(frame.index >= next && frame.positions.size() == decoder.mesh()->positions.size());
+      next = std::uint64_t{frame.index} + 1;
+    }
+  };
+  while (!stream.empty()) {
+    const std::size_t size = std::min<std::size_t>(stream.size(), 1 + (chunks() >> chunks() % 32));
+    std::span<const std::uint8_t> part = stream.first(size);
+    stream = stream.subspan(size);
+    while (!part.empty()) {
+      if (!decoder.Send(part).ok()) return;
+      drain();
+    }
+  }
+  (void)decoder.Finish();
+  drain();
+}
+
 void CheckStatus(const Status& status) {
   FUZZ_REQUIRE(status.ok() == status.message().empty());
   FUZZ_REQUIRE(status.message().find('\n') == std::string::npos);
@@ -73,6 +102,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const Bytes repaired = Repaired(input);
   const std::uint32_t seed = Crc32(input);
   std::mt19937 chunks(seed);
+  DecodeAround(input, chunks);
   const Outcome outcome = Decode(repaired, &chunks);
   CheckStatus(outcome.status);
   if (seed % 8 != 0) return 0;

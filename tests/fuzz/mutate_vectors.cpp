@@ -52,7 +52,9 @@ double Now() { return static_cast<double>(std::clock()) / CLOCKS_PER_SEC; }
 void Try(const Bytes& stream, Counts& counts) {
   alarm(60);  // ends what hangs
   const double start = Now();
-  Decoder decoder({VectorLimits()});
+  DecoderSettings settings;
+  settings.limits = VectorLimits();
+  Decoder decoder(settings);
   DecodedFrame frame;
   Status status;
   for (std::span<const std::uint8_t> rest(stream); status.ok() && !rest.empty();) {
