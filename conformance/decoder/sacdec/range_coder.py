@@ -45,9 +45,18 @@ class RangeDecoder:
         return value
 
     def finish(self) -> None:
-        """ "The end" of 7.1: when everything is decoded, the position is 0 to 4 bytes beyond the end."""
+        """ "The end" of 7.1: the bytes are the only ones that say what was decoded."""
         if self.position < len(self.data):
             raise StreamError(self.rule, "bytes are left after a range code")
+        if self.position < len(self.data) + 4 and self.data[-1] == 0:
+            raise StreamError(self.rule, "a range code ends with a zero")
+        last = int.from_bytes((self.data + bytes(4))[self.position - 4 : self.position], "big")
+        low = (last - self.code) % 2**32
+        end = low + self.code
+        power = end & -end if end else 2**32
+        rounder = -(-low // (2 * power)) * 2 * power  # the first multiple of the next power
+        if self.code >= self.range or (end and rounder < low + self.range):
+            raise StreamError(self.rule, "a range code has another end than it should")
 
 
 class BitModel:
