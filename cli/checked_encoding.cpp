@@ -76,7 +76,7 @@ Status CheckedEncoding::EncodeUntilBytes(std::span<const std::uint8_t>& chunk) {
     } else {
       SAC_RETURN_IF_ERROR(AtInput("frame " + std::to_string(sent_) + ": ", encoder_->Send(frame)));
       ++sent_;
-      undecoded_.push_back(std::move(frame));
+      if (!settings_.unchecked) undecoded_.push_back(std::move(frame));
     }
   }
 }
@@ -101,9 +101,19 @@ Status CheckedEncoding::Check() {
   return Status::Ok();
 }
 
+Status CheckedEncoding::EncodeAll() {
+  Progress progress(input_->frame_count());
+  std::span<const std::uint8_t> chunk;
+  do {
+    SAC_RETURN_IF_ERROR(EncodeUntilBytes(chunk));
+    progress.FramesDone(sent_);
+  } while (!chunk.empty());
+  return Status::Ok();
+}
+
 Status CheckedEncoding::Run() {
   SAC_RETURN_IF_ERROR(Open());
-  SAC_RETURN_IF_ERROR(Check());
+  SAC_RETURN_IF_ERROR(settings_.unchecked ? EncodeAll() : Check());
   if (!settings_.order_map.empty()) {
     SAC_RETURN_IF_ERROR(order_map_.Write(FormatOrderMap(encoder_->order())));
     SAC_RETURN_IF_ERROR(order_map_.Close());  // the disk may be full

@@ -18,8 +18,8 @@
 
 namespace sac {
 
-// Encodes a clip and writes the stream; decodes it again as it comes, and measures it against the input. Memory holds
-// the frames of a group.
+// Encodes a clip and writes the stream; decodes it again as it comes, and measures it against the input, unless that is
+// not wanted. Memory holds the frames of a group.
 class CheckedEncoding {
  public:
   struct Settings {
@@ -30,6 +30,7 @@ class CheckedEncoding {
     EncoderSettings encoder;
     std::optional<ErrorLength> max_error;  // becomes the encoder's
     RateTargets targets;                   // where there is one, the encoder's steps and bits are searched for it
+    bool unchecked = false;                // neither decode nor measure: the distortion stays zero
   };
 
   explicit CheckedEncoding(const Settings& settings) : settings_(settings) {}
@@ -42,6 +43,7 @@ class CheckedEncoding {
   const SequenceHeader& header() const { return encoder_->header(); }
   const StreamBytes& parts() const { return encoder_->stream_bytes(); }
   std::uint64_t bytes() const { return bytes_; }
+  std::uint32_t frames() const { return sent_; }
   const DistortionMetrics& distortion() const { return distortion_; }
   // The input's texture coordinates could not be coded: the stream has none.
   bool lost_texture_coordinates() const { return lost_texture_coordinates_; }
@@ -52,6 +54,7 @@ class CheckedEncoding {
   Status Open();
   Status Search();
   Status Check();
+  Status EncodeAll();
   Status EncodeUntilBytes(std::span<const std::uint8_t>& chunk);
   Status AtInput(const std::string& where, const Status& status) const;
 

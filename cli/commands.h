@@ -20,5 +20,6 @@ Command AddInfoCommand(CLI::App& app);
 Command AddVerifyCommand(CLI::App& app);
 Command AddCompareCommand(CLI::App& app);
 Command AddSynthCommand(CLI::App& app);
+Command AddSweepCommand(CLI::App& app);
 
 }  // namespace sac

@@ -82,14 +82,13 @@ std::vector<std::pair<const char*, long long>> Parts(const StreamBytes& parts) {
 Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, double seconds) {
   const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(); };
   const SequenceHeader& header = encoding.header();
-  const DistortionMetrics& distortion = encoding.distortion();
   Json json;
   for (const auto& [part, bytes] : Parts(encoding.parts())) json[part] = bytes;
   json["bytes"] = encoding.bytes();
   json["bpvf"] = 8 * static_cast<double>(encoding.bytes()) /
-                 (static_cast<double>(header.vertices) * static_cast<double>(distortion.frames));
-  AddDistortion(distortion, json);
-  json["frames"] = distortion.frames;
+                 (static_cast<double>(header.vertices) * static_cast<double>(encoding.frames()));
+  if (!options.settings.unchecked) AddDistortion(encoding.distortion(), json);
+  json["frames"] = encoding.frames();
   json["vertices"] = header.vertices;
   json["triangles"] = header.triangles;
   json["harmonics"] = header.harmonics;
@@ -119,16 +118,16 @@ Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, doubl
 
 void PrintText(const Json& json, const CheckedEncoding& encoding, std::FILE* file) {
   const SequenceHeader& header = encoding.header();
-  const std::size_t frames = encoding.distortion().frames;
+  const std::uint32_t frames = encoding.frames();
   const auto bytes = static_cast<double>(encoding.bytes());
   const double raw = 12 * static_cast<double>(header.vertices) * static_cast<double>(frames);
-  std::fprintf(file, "%zu frames, %u vertices, %u triangles\n", frames, header.vertices, header.triangles);
+  std::fprintf(file, "%u frames, %u vertices, %u triangles\n", frames, header.vertices, header.triangles);
   std::fprintf(file, "%.0f bytes, 1 : %.1f of raw float32, %.4g bits a vertex and frame\n", bytes, raw / bytes,
                json["bpvf"].get<double>());
   for (const auto& [part, size] : Parts(encoding.parts())) {
     std::fprintf(file, "  %-12s %10lld bytes %5.1f %%\n", part, size, 100 * static_cast<double>(size) / bytes);
   }
-  PrintDistortion(encoding.distortion(), file);
+  if (json.contains("kg")) PrintDistortion(encoding.distortion(), file);
   if (encoding.trials() > 0) {
     const EncoderSettings& s = encoding.encoder_settings();
     std::fprintf(
@@ -225,6 +224,7 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
   app.add_option("--order-map", o.settings.order_map,
                  "write the order of the vertices to a file, for decode --order-map")
       ->option_text("FILE");
+  app.add_flag("--unchecked", o.settings.unchecked, "neither decode nor measure what is written: in half the time");
   app.add_flag("--json", o.json, "report sizes in bytes, distortion and settings as one JSON object");
 }
 

@@ -72,7 +72,8 @@ ExitCode Run(int argc, char** argv) {
       "  sac info walk.sac\n"
       "  sac decode walk.sac -o frame_%04d.obj\n");
   const std::vector<Command> commands{AddEncodeCommand(app), AddDecodeCommand(app),  AddInfoCommand(app),
-                                      AddVerifyCommand(app), AddCompareCommand(app), AddSynthCommand(app)};
+                                      AddVerifyCommand(app), AddCompareCommand(app), AddSynthCommand(app),
+                                      AddSweepCommand(app)};
   for (CLI::App* command : app.get_subcommands(nullptr)) WrapDescriptions(*command);
   const auto chosen = [&] {
     return std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.app->parsed(); });

@@ -13,7 +13,7 @@ class UsageTest : public SacCommandOnClip {};
 TEST_F(UsageTest, HelpAndVersion) {
   EXPECT_EQ(Good({"--version"}).rfind("sac ", 0), 0u);
   EXPECT_NE(Good({"--help"}).find("compare"), std::string::npos);
-  for (const char* command : {"encode", "decode", "info", "verify", "compare", "synth"}) {
+  for (const char* command : {"encode", "decode", "info", "verify", "compare", "synth", "sweep"}) {
     EXPECT_NE(Good({command, "--help"}).find(std::string("  sac ") + command), std::string::npos) << command;
   }
   const Outcome full = Shell(Quote(SAC_EXECUTABLE) + " --help 2>&1 > /dev/full");

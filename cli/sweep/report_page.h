@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+namespace sac {
+
+// The HTML of a report: page.html with page.js, Chart.js, three.js and `json` in it.
+std::string ReportPage(const std::string& json);
+
+// RFC 4648.
+std::string Base64(const std::string& bytes);
+
+}  // namespace sac

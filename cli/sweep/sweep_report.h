@@ -1,0 +1,24 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "cli/sweep/sweep_clip.h"
+#include "cli/sweep/sweep_codec.h"
+#include "cli/sweep/sweep_run.h"
+#include "format/status.h"
+
+namespace sac {
+
+struct Sweep {
+  std::vector<SweepClip> clips;
+  std::vector<SweepCodec> codecs;  // the first is sac, which the others are compared with
+  std::vector<SweepResult> results;
+  unsigned jobs = 1;  // that were measured at a time
+};
+
+// Writes sweep.csv (a line a result), sweep.json (clips, codecs, results, Bjontegaard rates) and sweep.html: one page
+// with plots and decoded shapes that needs no other file and no network.
+Status WriteReport(const Sweep& sweep, const std::string& directory);
+
+}  // namespace sac

@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "cli/sweep/child_process.h"
+#include "cli/sweep/sweep_clip.h"
+#include "cli/sweep/sweep_codec.h"
+#include "format/status.h"
+#include "metrics/error_meter.h"
+
+namespace sac {
+
+// One clip coded by one codec at one setting. Each was a program of its own that got no more than its files.
+struct SweepResult {
+  std::size_t clip = 0, codec = 0, setting = 0;
+  std::string error;  // why there is no result; empty when there is one
+  std::uint64_t bytes = 0;
+  double bpvf = 0;
+  DistortionMetrics distortion;
+  ProcessUsage encode, decode;
+  std::string samples_path;  // of the decoded frames shown: shapes, then errors (display_mesh.h)
+};
+
+// All clips by all codecs at all settings, `jobs` at a time. What an earlier run into the same directory has done, with
+// the same content, settings and programs, is taken from there. Prints a line for each new result. A codec that fails
+// is a result with an error, and is tried again by the next run.
+Status RunSweep(const std::vector<SweepClip>& clips, const std::vector<SweepCodec>& codecs,
+                const std::string& results_directory, const std::string& work_directory, unsigned jobs,
+                std::vector<SweepResult>& results);
+
+}  // namespace sac
