@@ -1,0 +1,47 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "codec/mesh.h"
+#include "format/status.h"
+
+namespace sac::bench {
+
+// A clip as a whole, as most peers need it.
+struct PeerClip {
+  std::vector<Triangle> triangles;
+  std::vector<Positions> frames;  // at least one, all of the same number of vertices
+
+  std::size_t vertices() const { return frames.front().size(); }
+};
+
+// What an encoder makes of it. All that the decoder gets is `bytes`.
+struct PeerStream {
+  std::vector<std::uint8_t> bytes;
+  // Only for measuring: the input's vertex that each decoded one stands for. Several may stand for one.
+  std::vector<std::uint32_t> order;
+};
+
+// Another codec, as a program for `sac sweep --peers` (cli/sweep/sweep_codec.h says how it is called).
+struct Peer {
+  std::string title, version;
+  std::string parameter;              // what a setting is, in a word or two; may be empty
+  std::vector<std::string> settings;  // from small to near
+  std::function<Status(const PeerClip& clip, const std::string& setting, PeerStream& stream)> encode;
+  std::function<Status(std::span<const std::uint8_t> bytes, PeerClip& clip)> decode;
+};
+
+// The body of main: describe, encode or decode.
+int RunPeer(int argc, char** argv, const Peer& peer);
+
+// A setting that is a number. False, and `value` left alone, when it is none.
+bool ParseNumber(const std::string& text, double& value);
+
+// Of the first frame's bounding box.
+double Diagonal(const PeerClip& clip);
+
+}  // namespace sac::bench
