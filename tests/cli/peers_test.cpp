@@ -52,6 +52,32 @@ TEST_F(PeersTest, DecodeWhatTheyEncode) {
   }
 }
 
+TEST_F(PeersTest, PublishedSacAndItsSwitches) {
+  Good({"synth", "sphere", "-o", "in.pc2", "--vertices", "162", "--frames", "9"});
+  const auto run = [&](const std::string& setting, const std::string& name) {
+    const std::string peer = Quote(SAC_PEER_DIRECTORY "/sac-peer-sac2015");
+    const Outcome outcome =
+        Shell(peer + " encode in.obj in.pc2 -o " + name + ".bin --order-map m --setting " + setting + " && " + peer +
+              " decode " + name + ".bin -o " + name + ".pc2 --order-map m");
+    EXPECT_EQ(outcome.code, 0) << setting << outcome.err;
+    return GoodJson({"compare", "in.obj", "in.pc2", "--with", "in.obj", name + ".pc2", "--json"});
+  };
+  // The arithmetic coder changes bytes alone; without it a coefficient takes its bits: 8 frames of 20 x 9.
+  const auto coded = run("20/11", "coded"), raw = run("20/11/no-arithmetic", "raw"),
+             finer = run("20/12/no-arithmetic", "finer");
+  EXPECT_EQ(Read("coded.pc2"), Read("raw.pc2"));
+  EXPECT_NE(Read("coded.bin"), Read("raw.bin"));
+  EXPECT_NEAR(static_cast<double>(Read("finer.bin").size() - Read("raw.bin").size()), 8 * 20 * 9 / 8.0, 2);
+  EXPECT_NE(run("20/11/no-polar", "j")["kg"], coded["kg"]);
+  // With as many harmonics as vertices and many bits little is lost.
+  EXPECT_LT(run("162/22", "near")["kg"], 0.2 * coded["kg"].get<double>());
+  EXPECT_EQ(Read("near.pc2").substr(32, 12 * 162), Read("in.pc2").substr(32, 12 * 162))
+      << "the first frame is lossless";
+  const Outcome wrong = Shell(Quote(SAC_PEER_DIRECTORY "/sac-peer-sac2015") +
+                              " encode in.obj in.pc2 -o x --order-map m --setting 20/11/no-such");
+  EXPECT_EQ(wrong.code, 1);
+}
+
 // Two tetrahedra that meet in an edge (four triangles around it) and in a vertex with a third; a vertex of no triangle.
 TEST_F(PeersTest, OddMeshesComeBackOrAreRefused) {
   const std::string mesh =
