@@ -104,7 +104,7 @@ std::string Version() {
 
 int main(int argc, char** argv) {
   return sac::bench::RunPeer(argc, argv,
-                             {"meshoptimizer's vertex codec on frame differences, zstd",
+                             {"meshoptimizer on frame differences, zstd",
                               sac::bench::Version(),
                               "bits",
                               {"7", "8", "9", "10", "11", "12", "13", "14"},

@@ -205,7 +205,7 @@ Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
 
 int main(int argc, char** argv) {
   return sac::bench::RunPeer(argc, argv,
-                             {"trajectory PCA, neighbour prediction (CoDDyaC family)",
+                             {"trajectory PCA (CoDDyaC family)",
                               "re-implemented",
                               "components",
                               {"10", "20", "40", "60", "90", "120", "160"},

@@ -101,8 +101,9 @@ Status Decode(const Arguments& arguments, const Peer& peer) {
 
 Status Run(const std::vector<std::string>& words, const Peer& peer) {
   if (words == std::vector<std::string>{"describe"}) {
-    const nlohmann::ordered_json json{
+    nlohmann::ordered_json json{
         {"title", peer.title}, {"version", peer.version}, {"parameter", peer.parameter}, {"settings", peer.settings}};
+    if (!peer.missing.empty()) json["missing"] = peer.missing;
     std::printf("%s\n", json.dump().c_str());
     return Status::Ok();
   }

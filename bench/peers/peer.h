@@ -33,6 +33,7 @@ struct Peer {
   std::vector<std::string> settings;  // from small to near
   std::function<Status(const PeerClip& clip, const std::string& setting, PeerStream& stream)> encode;
   std::function<Status(std::span<const std::uint8_t> bytes, PeerClip& clip)> decode;
+  std::string missing = {};  // why it cannot be run; empty when it can
 };
 
 // The body of main: describe, encode or decode.

@@ -4,7 +4,7 @@
 
 const data = JSON.parse(document.getElementById("data").textContent);
 const palette = ["#0b57d0", "#d9480f", "#2b8a3e", "#862e9c", "#c2255c", "#0c8599", "#846358", "#e0a800", "#495057",
-  "#5c940d", "#364fc7", "#a61e4d"];
+  "#5c940d", "#f06595", "#a61e4d"];
 
 // What a result is drawn and listed by. `of` gives nothing for what has no place on a logarithmic axis.
 const positive = (x) => (x > 0 && Number.isFinite(x) ? x : undefined);

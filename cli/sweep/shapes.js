@@ -51,7 +51,7 @@ function makeStrip(canvas, columns, radius) {
   renderer.setPixelRatio(window.devicePixelRatio);
   renderer.setScissorTest(true);
   const camera = new THREE.PerspectiveCamera(30, 1, radius / 100, radius * 100);
-  camera.position.set(0.5, 0.3, 1).setLength(3 * radius);
+  camera.position.set(0.5, 0.3, 1).setLength(3.3 * radius);
   camera.add(new THREE.DirectionalLight(0xffffff, 0.75));
   const controls = new THREE.OrbitControls(camera, canvas);
   const cells = [];
@@ -101,8 +101,8 @@ function drawShapes(parent, clip, data) {
   const scale = make("div", "key"), bar = make("div", "scale"), ticks = make("div", "ticks");
   bar.style.background = `linear-gradient(to right, ${errorColors.join(",")})`;
   for (const t of ["1e-6", "1e-5", "1e-4", "1e-3", "0.01", "0.1"]) ticks.append(make("span", "", t));
-  scale.append(bar, ticks);
-  row.append(select, scale, make("span", "note", "error, in diagonals of the first frame's box"));
+  scale.append(bar, ticks, make("span", "note", "error, in diagonals of the first frame's box"));
+  row.append(select, scale);
   const canvas = make("canvas", "strip");
   const shown = shapes.vertices === clip.vertices ? "" : `, ${shapes.vertices} of ${clip.vertices} vertices`;
   parent.append(row, canvas, make("p", "note", `Frames ${shapes.frames.join(", ")}${shown}: the original above, decoded ` +

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "bench/peers/peer.h"
+#include "codec/mesh.h"
+#include "format/status.h"
+
+namespace sac::bench {
+
+// Writes PATH.gltf and PATH.bin: the first frame as a mesh, every other one as a morph target, and an animation that
+// shows them one after the other. `ids` instead: the first frame alone, with each vertex's number as texture
+// coordinates (v mod 4096, v / 4096).
+Status WriteGltf(const PeerClip& clip, bool ids, const std::string& path);
+
+// A binary glTF file with one mesh, as gltfpack makes it: quantized, EXT_meshopt_compression.
+class GlbFile {
+ public:
+  Status Open(std::span<const std::uint8_t> bytes);
+
+  // Each frame of the animation: the mesh with its morph targets at the weights of each key; of a file without an
+  // animation the mesh alone.
+  Status Frames(std::vector<Positions>& frames) const;
+  Status Triangles(std::vector<Triangle>& triangles) const;
+  // The first texture coordinates: pairs of numbers.
+  Status TextureCoordinates(std::vector<double>& values) const;
+
+ private:
+  const nlohmann::json& Primitive() const { return json_.at("meshes").at(0).at("primitives").at(0); }
+  Status BufferView(std::size_t index, std::vector<std::uint8_t>& bytes, std::size_t& stride) const;
+  Status Values(std::size_t accessor, std::size_t components, std::vector<double>& values) const;
+
+  nlohmann::json json_;
+  std::span<const std::uint8_t> binary_;
+};
+
+}  // namespace sac::bench
