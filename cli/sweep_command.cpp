@@ -30,6 +30,7 @@ struct SweepOptions {
   std::string peers = "none", peer_directory;
   std::string qualities = "0,10,25,40,50,60,70,80,90,100", max_errors;
   std::vector<std::string> also;
+  bool keep = false;
   unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
 };
 
@@ -125,8 +126,8 @@ Status RunAndReport(const SweepOptions& options) {
     }
   }
   ForgetPeakMemory();
-  SAC_RETURN_IF_ERROR(
-      RunSweep(sweep.clips, sweep.codecs, directory.results(), directory.work(), options.jobs, sweep.results));
+  SAC_RETURN_IF_ERROR(RunSweep(sweep.clips, sweep.codecs, {directory.results(), directory.work(), options.keep},
+                               options.jobs, sweep.results));
   SAC_RETURN_IF_ERROR(WriteReport(sweep, directory.path()));
   const auto failed = std::count_if(sweep.results.begin(), sweep.results.end(),
                                     [](const SweepResult& result) { return !result.error.empty(); });
@@ -170,6 +171,8 @@ Command AddSweepCommand(CLI::App& app) {
       ->option_text("OPTIONS")
       ->take_all()
       ->expected(1);
+  command->add_flag("--keep", options->keep,
+                    "keep streams and decoded clips in results/, as KEY.stream and KEY.decoded.pc2");
   AddNumber(*command, "--jobs", options->jobs, 1u, 256u, "settings measured at a time [one a processor]");
   std::string peers;
   for (const std::string& name : PeerNames()) peers += " " + name;

@@ -151,9 +151,9 @@ struct Quantizer {
 template <class Code>
 Status EncodeFrames(const SpectralBasis& basis, const Settings& settings, const std::vector<PositionMatrix>& frames,
                     Code&& code) {
-  TriangleFields fields(basis.triangles());
   PositionMatrix decoded = frames[0];
   for (std::size_t f = 1; f < frames.size(); ++f) {
+    TriangleFields fields(basis.triangles());  // turns from frame to frame are below pi: no branches to follow
     MatrixXd measured = fields.Measure(decoded, frames[f]);
     for (Eigen::Index j = 0; !settings.polar && j < measured.rows(); ++j) {
       double channels[kChannels];

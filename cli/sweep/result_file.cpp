@@ -51,6 +51,7 @@ Json ToJson(const SweepClip& clip, const SweepCodec& codec, const SweepResult& r
     json["error"] = result.error;
     return json;
   }
+  json["key"] = result.key;
   json["bytes"] = result.bytes;
   json["bpvf"] = result.bpvf;
   AddDistortion(result.distortion, json);

@@ -27,20 +27,31 @@ std::string KeyOf(const SweepClip& clip, const SweepCodec& codec, const SweepCod
   return key.Text();
 }
 
+constexpr const char *kStream = ".stream", *kDecoded = ".decoded.pc2";
+
 // Files that are there while one setting is measured.
 class Scratch {
  public:
   explicit Scratch(const std::string& stem) : stem_(stem) {}
   ~Scratch() {
     std::error_code ignored;
-    for (const char* ending : {".stream", ".map", ".decoded.pc2", ".decoded.obj"}) fs::remove(stem_ + ending, ignored);
+    for (const char* ending : {kStream, ".map", kDecoded, ".decoded.obj"}) fs::remove(stem_ + ending, ignored);
   }
   Scratch(const Scratch&) = delete;
   Scratch& operator=(const Scratch&) = delete;
 
-  std::string stream() const { return stem_ + ".stream"; }
+  std::string stream() const { return stem_ + kStream; }
   std::string map() const { return stem_ + ".map"; }
-  std::string decoded() const { return stem_ + ".decoded.pc2"; }
+  std::string decoded() const { return stem_ + kDecoded; }
+
+  Status KeepAs(const std::string& stem) const {
+    std::error_code error;
+    for (const char* ending : {kStream, kDecoded}) {
+      fs::rename(stem_ + ending, stem + ending, error);
+      if (error) return Status::IoError(stem + ending + ": " + error.message());
+    }
+    return Status::Ok();
+  }
 
  private:
   std::string stem_;
@@ -112,9 +123,8 @@ std::vector<SweepResult> Plan(const std::vector<SweepClip>& clips, const std::ve
 
 }  // namespace
 
-Status RunSweep(const std::vector<SweepClip>& clips, const std::vector<SweepCodec>& codecs,
-                const std::string& results_directory, const std::string& work_directory, unsigned jobs,
-                std::vector<SweepResult>& results) {
+Status RunSweep(const std::vector<SweepClip>& clips, const std::vector<SweepCodec>& codecs, const SweepPlaces& places,
+                unsigned jobs, std::vector<SweepResult>& results) {
   results = Plan(clips, codecs);
   const std::string& sac = codecs.front().program;
   Progress progress;
@@ -133,13 +143,16 @@ Status RunSweep(const std::vector<SweepClip>& clips, const std::vector<SweepCode
     const SweepClip& clip = clips[result.clip];
     const SweepCodec& codec = codecs[result.codec];
     const SweepCodec::Setting& setting = codec.settings[result.setting];
-    const std::string key = KeyOf(clip, codec, setting);
-    const std::string path = results_directory + "/" + key + ".json";
-    result.samples_path = results_directory + "/" + key + ".samples";
-    if (ReadResult(path, result)) return finish(result, false, Status::Ok());
+    result.key = KeyOf(clip, codec, setting);
+    const std::string stem = places.results + "/" + result.key, path = stem + ".json";
+    result.samples_path = stem + ".samples";
+    std::error_code ignored;
+    const bool kept = !places.keep || (fs::exists(stem + kStream, ignored) && fs::exists(stem + kDecoded, ignored));
+    if (kept && ReadResult(path, result)) return finish(result, false, Status::Ok());
     // Two results may have one key: of a clip given twice, of peers that are links.
-    const Scratch files(work_directory + "/" + std::to_string(&result - results.data()));
-    const Status status = Measure(sac, clip, codec, setting, files, result);
+    const Scratch files(places.work + "/" + std::to_string(&result - results.data()));
+    Status status = Measure(sac, clip, codec, setting, files, result);
+    if (status.ok() && places.keep) status = files.KeepAs(stem);
     result.error = status.message();
     finish(result, true, status.ok() ? WriteResult(path, clip, codec, result) : Status::Ok());
   };

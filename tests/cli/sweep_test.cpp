@@ -127,6 +127,37 @@ TEST_F(SweepTest, GoesOnWhereItWasInterrupted) {
             (std::vector<std::string>{"results", "sweep.csv", "sweep.html", "sweep.json"}));
 }
 
+TEST_F(SweepTest, GoesOnAfterItWasKilled) {
+  // Its first encoding kills the sweep; the qualities of sac come before it.
+  AddPeer("zfp",
+          "#!/bin/sh\nif [ \"$1\" = encode ] && [ ! -e killed ]; then\n"
+          "  : > killed; kill -KILL $PPID; sleep 1\nfi\n" +
+              std::string(kCopyingPeer).substr(10));
+  const std::vector<std::string> sweep{"sweep",  "in.obj", "in.pc2",  "-o",  "report",           "--qualities", "20,60",
+                                       "--jobs", "1",      "--peers", "zfp", "--peer-directory", "peers"};
+  EXPECT_NE(Sac(sweep).code, 0);
+  EXPECT_EQ(Shell("ls report/sweep.html").code, 2);
+  const std::string out = Good(sweep);
+  EXPECT_EQ(out.find("in, sac, "), std::string::npos) << out;
+  EXPECT_NE(out.find("in, zfp, n 1: "), std::string::npos) << out;
+  EXPECT_EQ(Lines(Shell("ls -A report").out),
+            (std::vector<std::string>{"results", "sweep.csv", "sweep.html", "sweep.json"}));
+}
+
+TEST_F(SweepTest, KeepsWhatWasMeasured) {
+  Sweep();
+  EXPECT_EQ(Lines(Sweep({"--keep"})).size(), 3u) << "nothing was kept before";
+  EXPECT_EQ(Lines(Sweep({"--keep"})).size(), 1u);
+  const nlohmann::json report = Report();
+  for (const nlohmann::json& result : report["results"]) {
+    const std::string stem = "report/results/" + result["key"].get<std::string>();
+    EXPECT_EQ(Read(stem + ".stream").size(), result["bytes"]);
+    const auto measured =
+        GoodJson({"compare", "in.obj", "in.pc2", "--with", "in.obj", stem + ".decoded.pc2", "--json"});
+    EXPECT_EQ(measured["kg"], result["kg"]);
+  }
+}
+
 TEST_F(SweepTest, SeveralClips) {
   Good({"synth", "sphere", "-o", "s_%02d.ply", "--vertices", "42", "--frames", "3"});
   Good({"sweep", "in.obj", "in.pc2", "s_%02d.ply", "s_00.ply", "s_01.ply", "in.obj", "in.pc2", "-o", "report",
