@@ -184,8 +184,8 @@ Bytes Deep() {
   return parts.Join();
 }
 
-// Open groups beside a whole one, with references to any earlier frame; one is empty. Without Draco, for the decoder
-// written from the text.
+// Open groups beside a whole one, with references to any earlier frame; one is empty. Without Draco, for decoders that
+// do not have it yet.
 Bytes OpenGroups() {
   StreamParts parts = SmallStream();
   std::mt19937 random(9);
