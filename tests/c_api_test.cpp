@@ -132,6 +132,11 @@ TEST(CApi, SettingsCount) {
   EXPECT_NE(std::string(sac_decoder_message(small.decoder)).find("vertices"), std::string::npos);
 
   sac_settings_init(&settings);
+  settings.max_frame_work = 1000;
+  Player hurried(&settings);
+  EXPECT_EQ(hurried.Play(stream, 0, 100), SAC_LIMIT);
+
+  sac_settings_init(&settings);
   settings.skip_damage = 1;
   std::vector<std::uint8_t> damaged = stream;
   damaged[damaged.size() - 60] ^= 1;  // in the last group

@@ -92,10 +92,23 @@ const char* sac_stream_version(void) {
 void sac_settings_init(sac_settings* settings) {
   const sac::DecoderSettings defaults;
   const sac::Limits& limits = defaults.limits;
-  *settings = {
-      sizeof(sac_settings), limits.vertices,     limits.triangles,    limits.harmonics,  limits.frames_per_group,
-      limits.packet_bytes,  limits.group_values, limits.basis_values, limits.basis_work, defaults.skip_damage ? 1u : 0u,
-      defaults.frame_step,  defaults.threads};
+  *settings = {};
+  settings->struct_size = sizeof(sac_settings);
+  settings->max_vertices = limits.vertices;
+  settings->max_triangles = limits.triangles;
+  settings->max_harmonics = limits.harmonics;
+  settings->max_frames_per_group = limits.frames_per_group;
+  settings->max_packet_bytes = limits.packet_bytes;
+  settings->max_group_values = limits.group_values;
+  settings->max_basis_values = limits.basis_values;
+  settings->max_factor_values = limits.factor_values;
+  settings->max_basis_work = limits.basis_work;
+  settings->max_free_work = limits.free_work;
+  settings->max_work_per_byte = limits.work_per_byte;
+  settings->max_frame_work = limits.frame_work;
+  settings->skip_damage = defaults.skip_damage ? 1 : 0;
+  settings->frame_step = defaults.frame_step;
+  settings->threads = defaults.threads;
 }
 
 sac_decoder* sac_decoder_open(const sac_settings* settings) {
@@ -114,7 +127,11 @@ sac_decoder* sac_decoder_open(const sac_settings* settings) {
   to.limits.packet_bytes = s.max_packet_bytes;
   to.limits.group_values = s.max_group_values;
   to.limits.basis_values = s.max_basis_values;
+  to.limits.factor_values = s.max_factor_values;
   to.limits.basis_work = s.max_basis_work;
+  to.limits.free_work = s.max_free_work;
+  to.limits.work_per_byte = s.max_work_per_byte;
+  to.limits.frame_work = s.max_frame_work;
   to.skip_damage = s.skip_damage != 0;
   to.frame_step = s.frame_step;
   to.threads = s.threads;

@@ -54,7 +54,11 @@ typedef struct sac_settings {
   uint32_t max_packet_bytes;
   uint64_t max_group_values;
   uint64_t max_basis_values;
+  uint64_t max_factor_values;
   double max_basis_work;
+  double max_free_work; /* of basis work, beside max_work_per_byte for each byte of the first frame */
+  double max_work_per_byte;
+  double max_frame_work;
   uint32_t skip_damage; /* 1: go on after damage at the next sound group; 0: errors are final */
   uint32_t frame_step;  /* sac_decoder_receive() gives the frames whose number is a multiple of this */
   uint32_t threads;     /* that reconstruct frames of a group */
