@@ -6,7 +6,7 @@
 #include "cli/frame_rate.h"
 #include "cli/progress.h"
 #include "cli/vertex_order.h"
-#include "codec/encode/error_bound.h"
+#include "codec/bounding_box.h"
 
 namespace sac {
 
@@ -27,7 +27,7 @@ Status CheckedEncoding::Open() {
   }
   if (settings_.max_error) {
     encoder.max_error = settings_.max_error->value;
-    const double diagonal = BoxDiagonal(input_->mesh().positions);
+    const double diagonal = BoundingBox(input_->mesh().positions).diagonal();
     if (settings_.max_error->in_diagonals && diagonal == 0) {
       return AtInput("", Status::InvalidArgument("its first frame is a single point: --max-error needs model units"));
     }

@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+#include "codec/bounding_box.h"
 #include "codec/decode/decoder.h"
 #include "conformance/coefficients.h"
 #include "format/bytes.h"
@@ -95,15 +96,7 @@ TEST(Conformance, ValidStreamsDecode) {
     EXPECT_EQ(crc, std::stoul(vector.at("coefficients_crc32").get<std::string>(), nullptr, 16));
 
     // spec.md 8: the tolerance, and what rounding to binary32 adds here and in the manifest.
-    double diagonal = 0;
-    for (std::size_t a = 0; a < 3; ++a) {
-      double low = std::numeric_limits<double>::max(), high = -low;
-      for (const Vec3f& p : mesh.positions) {
-        low = std::min(low, static_cast<double>(p[a]));
-        high = std::max(high, static_cast<double>(p[a]));
-      }
-      diagonal = std::hypot(diagonal, high - low);
-    }
+    const double diagonal = BoundingBox(mesh.positions).diagonal();
     const double tolerance = 1e-6 * std::max(diagonal, static_cast<double>(d.decoder.header()->cell));
     for (const Json& row : vector.at("positions")) {
       const auto& position = d.frames.at(row.at(0)).positions.at(row.at(1));

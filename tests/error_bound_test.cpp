@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "codec/bounding_box.h"
 #include "tests/test_clips.h"
 
 namespace sac {
@@ -70,7 +71,7 @@ void ExpectHeld(const Clip& clip, const Encoded& encoded, double bound) {
 
 TEST(ErrorBound, HoldsForEveryDecodedFloat) {
   for (const auto& [name, clip] : NastyClips()) {
-    const double diagonal = BoxDiagonal(clip.mesh.positions);
+    const double diagonal = BoundingBox(clip.mesh.positions).diagonal();
     for (const double bound : {0.3, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6, 2e-7}) {
       for (const ReferenceShape reference : {ReferenceShape::kKey, ReferenceShape::kPrevious}) {
         SCOPED_TRACE(name + " " + std::to_string(bound));

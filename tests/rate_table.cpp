@@ -6,7 +6,7 @@
 #include <optional>
 #include <sstream>
 
-#include "codec/encode/error_bound.h"
+#include "codec/bounding_box.h"
 #include "codec/encode/search/trial.h"
 #include "synth/synth.h"
 
@@ -69,7 +69,7 @@ Status MeasureRates(std::vector<RateRow>& rows) {
     }
     for (const double bound : wanted.bounds) {
       EncoderSettings settings;
-      settings.max_error = bound * BoxDiagonal(clip.mesh().positions);
+      settings.max_error = bound * BoundingBox(clip.mesh().positions).diagonal();
       std::ostringstream text;
       text << "max error " << bound << "d";
       SAC_RETURN_IF_ERROR(Measure(clip, name.str(), text.str(), settings, rows));

@@ -7,36 +7,27 @@
 
 #include <algorithm>
 
-#include "bench/peers/connectivity.h"
-#include "bench/peers/peer.h"
-#include "format/bytes.h"
+#include "bench/peers/array_peer.h"
 
 namespace sac::bench {
 namespace {
 
 constexpr std::size_t kVerticesPerTrack = 85;
 
-Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stream) {
-  double bits = 0;
-  if (!ParseNumber(setting, bits)) return Status::InvalidArgument(setting + ": not a number of bits");
-  ByteWriter out;
-  Connectivity connectivity;
-  SAC_RETURN_IF_ERROR(WriteConnectivity(clip, out, connectivity));
-  stream.order = connectivity.order;
-  out.Varint(static_cast<std::uint32_t>(clip.frames.size()));
-
+Status Encode(const std::vector<Positions>& frames, double bits, ByteWriter& out) {
+  const std::size_t n = frames.front().size();
   draco::KeyframeAnimation animation;
   std::vector<float> times;
-  for (std::size_t f = 0; f < clip.frames.size(); ++f) times.push_back(static_cast<float>(f));
+  for (std::size_t f = 0; f < frames.size(); ++f) times.push_back(static_cast<float>(f));
   if (!animation.SetTimestamps(times)) return Status::Unsupported("Draco: timestamps");
   draco::EncoderOptions options = draco::EncoderOptions::CreateDefaultOptions();
   options.SetSpeed(0, 0);
-  for (std::size_t first = 0; first < stream.order.size(); first += kVerticesPerTrack) {
-    const std::size_t end = std::min(first + kVerticesPerTrack, stream.order.size());
+  for (std::size_t first = 0; first < n; first += kVerticesPerTrack) {
+    const std::size_t end = std::min(first + kVerticesPerTrack, n);
     std::vector<float> data;
-    for (const Positions& frame : clip.frames) {
+    for (const Positions& frame : frames) {
       for (std::size_t v = first; v < end; ++v) {
-        const Vec3f& p = frame[stream.order[v]];
+        const Vec3f& p = frame[v];
         data.insert(data.end(), p.begin(), p.end());
       }
     }
@@ -50,15 +41,10 @@ Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stre
     return Status::Unsupported(std::string("Draco: ") + status.error_msg());
   }
   out.Bytes({reinterpret_cast<const std::uint8_t*>(buffer.data()), buffer.size()});
-  stream.bytes = out.bytes();
   return Status::Ok();
 }
 
-Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
-  ByteReader in(bytes);
-  Connectivity connectivity;
-  SAC_RETURN_IF_ERROR(ReadConnectivity(in, connectivity));
-  const std::uint32_t frames = in.Varint();
+Status Decode(ByteReader& in, std::vector<Positions>& frames) {
   const auto rest = in.Bytes(in.remaining());
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(rest.data()), rest.size());
@@ -67,34 +53,33 @@ Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
   if (const draco::Status status = decoder.Decode(draco::DecoderOptions(), &buffer, &animation); !status.ok()) {
     return Status::Corrupt(std::string("Draco: ") + status.error_msg());
   }
-  clip.triangles = connectivity.triangles;
-  clip.frames.assign(frames, Positions(connectivity.vertices));
+  const std::size_t n = frames.front().size();
   std::size_t first = 0;
   for (int id = 1; id <= animation.num_animations(); ++id) {
     const draco::PointAttribute& track = *animation.keyframes(id);
     const std::size_t count = track.num_components() / 3u;
     std::vector<float> values(3 * count);
-    if (first + count > connectivity.vertices) return Status::Corrupt("too many tracks");
-    for (std::uint32_t f = 0; f < frames; ++f) {
+    if (first + count > n) return Status::Corrupt("too many tracks");
+    for (std::uint32_t f = 0; f < frames.size(); ++f) {
       track.GetMappedValue(draco::PointIndex(f), values.data());
       for (std::size_t v = 0; v < count; ++v) {
-        clip.frames[f][first + v] = {values[3 * v], values[3 * v + 1], values[3 * v + 2]};
+        frames[f][first + v] = {values[3 * v], values[3 * v + 1], values[3 * v + 2]};
       }
     }
     first += count;
   }
-  return first == connectivity.vertices ? Status::Ok() : Status::Corrupt("too few tracks");
+  return first == n ? Status::Ok() : Status::Corrupt("too few tracks");
 }
 
 }  // namespace
 }  // namespace sac::bench
 
 int main(int argc, char** argv) {
-  return sac::bench::RunPeer(argc, argv,
-                             {"Draco, keyframe animation",
-                              draco::kDracoVersion,
-                              "bits",
-                              {"7", "8", "9", "10", "11", "12", "13", "14"},
-                              sac::bench::Encode,
-                              sac::bench::Decode});
+  return sac::bench::RunArrayPeer(argc, argv,
+                                  {"Draco, keyframe animation",
+                                   draco::kDracoVersion,
+                                   "bits",
+                                   {"7", "8", "9", "10", "11", "12", "13", "14"},
+                                   sac::bench::Encode,
+                                   sac::bench::Decode});
 }

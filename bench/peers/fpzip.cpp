@@ -3,9 +3,7 @@
 
 #include <algorithm>
 
-#include "bench/peers/connectivity.h"
-#include "bench/peers/peer.h"
-#include "format/bytes.h"
+#include "bench/peers/array_peer.h"
 
 namespace sac::bench {
 namespace {
@@ -21,50 +19,37 @@ void Describe(FPZ& fpz, int bits, std::size_t vertices, std::size_t frames) {
   fpz.nf = 3;
 }
 
-Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stream) {
-  double bits = 0;
-  if (!ParseNumber(setting, bits)) return Status::InvalidArgument(setting + ": not a number of bits");
-  ByteWriter out;
-  Connectivity connectivity;
-  SAC_RETURN_IF_ERROR(WriteConnectivity(clip, out, connectivity));
-  stream.order = connectivity.order;
-  const std::size_t n = stream.order.size(), frames = clip.frames.size();
+Status Encode(const std::vector<Positions>& frames, double bits, ByteWriter& out) {
+  const std::size_t n = frames.front().size();
   std::vector<float> values;
   for (std::size_t a = 0; a < 3; ++a) {
-    for (const Positions& frame : clip.frames) {
-      for (const std::uint32_t v : stream.order) values.push_back(frame[v][a]);
+    for (const Positions& frame : frames) {
+      for (const Vec3f& p : frame) values.push_back(p[a]);
     }
   }
   std::vector<std::uint8_t> bytes(values.size() * sizeof(float) * 5 / 4 + kMargin);
   FPZ* fpz = fpzip_write_to_buffer(bytes.data(), bytes.size());
-  Describe(*fpz, static_cast<int>(bits), n, frames);
+  Describe(*fpz, static_cast<int>(bits), n, frames.size());
   const std::size_t size = fpzip_write(fpz, values.data());
   fpzip_write_close(fpz);
   if (size == 0) return Status::Unsupported(std::string("fpzip: ") + fpzip_errstr[fpzip_errno]);
-  out.Varint(static_cast<std::uint32_t>(frames));
   out.U8(static_cast<std::uint8_t>(bits));
   out.Bytes({bytes.data(), size});
-  stream.bytes = out.bytes();
   return Status::Ok();
 }
 
-Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
-  ByteReader in(bytes);
-  Connectivity connectivity;
-  SAC_RETURN_IF_ERROR(ReadConnectivity(in, connectivity));
-  const std::size_t n = connectivity.vertices, frames = in.Varint();
+Status Decode(ByteReader& in, std::vector<Positions>& frames) {
+  const std::size_t n = frames.front().size();
   const int bits = in.U8();
   const auto code = in.Bytes(in.remaining());
-  if (!in.ok()) return Status::Corrupt("truncated stream");
-  std::vector<float> values(3 * n * frames);
+  std::vector<float> values(3 * n * frames.size());
   FPZ* fpz = fpzip_read_from_buffer(code.data());
-  Describe(*fpz, bits, n, frames);
+  Describe(*fpz, bits, n, frames.size());
   const std::size_t size = fpzip_read(fpz, values.data());
   fpzip_read_close(fpz);
   if (size == 0) return Status::Corrupt(std::string("fpzip: ") + fpzip_errstr[fpzip_errno]);
-  clip.triangles = connectivity.triangles;
-  clip.frames.assign(frames, Positions(n));
-  for (std::size_t i = 0; i < values.size(); ++i) clip.frames[i / n % frames][i % n][i / (n * frames)] = values[i];
+  for (std::size_t i = 0; i < values.size(); ++i)
+    frames[i / n % frames.size()][i % n][i / (n * frames.size())] = values[i];
   return Status::Ok();
 }
 
@@ -74,11 +59,11 @@ std::string Version() { return std::to_string(FPZIP_VERSION_MAJOR) + "." + std::
 }  // namespace sac::bench
 
 int main(int argc, char** argv) {
-  return sac::bench::RunPeer(argc, argv,
-                             {"fpzip, vertices by frames",
-                              sac::bench::Version(),
-                              "bits of a float",
-                              {"14", "16", "18", "20", "22", "24"},
-                              sac::bench::Encode,
-                              sac::bench::Decode});
+  return sac::bench::RunArrayPeer(argc, argv,
+                                  {"fpzip, vertices by frames",
+                                   sac::bench::Version(),
+                                   "bits of a float",
+                                   {"14", "16", "18", "20", "22", "24"},
+                                   sac::bench::Encode,
+                                   sac::bench::Decode});
 }

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "cli/output_file.h"
+#include "codec/bounding_box.h"
 #include "format/bytes.h"
 
 namespace sac::bench {
@@ -42,15 +43,9 @@ class Buffer {
   // glTF wants the bounds of positions.
   std::size_t AddPositions(const Positions& positions) {
     const std::size_t index = Add(positions.data(), positions.size() * sizeof(Vec3f), positions.size(), kFloat, "VEC3");
-    Vec3f low = positions.front(), high = low;
-    for (const Vec3f& p : positions) {
-      for (std::size_t a = 0; a < 3; ++a) {
-        low[a] = std::min(low[a], p[a]);
-        high[a] = std::max(high[a], p[a]);
-      }
-    }
-    gltf_["accessors"][index]["min"] = low;
-    gltf_["accessors"][index]["max"] = high;
+    const Box box = BoundingBox(positions);
+    gltf_["accessors"][index]["min"] = box.low;
+    gltf_["accessors"][index]["max"] = box.high;
     return index;
   }
 

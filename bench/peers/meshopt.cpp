@@ -7,24 +7,16 @@
 #include <array>
 #include <cmath>
 
-#include "bench/peers/connectivity.h"
-#include "bench/peers/peer.h"
-#include "format/bytes.h"
+#include "bench/peers/array_peer.h"
 
 namespace sac::bench {
 namespace {
 
 using Packed = std::array<std::uint16_t, 4>;  // three coordinates; the codec takes multiples of four bytes
 
-Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stream) {
-  double bits = 0;
-  if (!ParseNumber(setting, bits)) return Status::InvalidArgument(setting + ": not a number of bits");
-  ByteWriter out;
-  Connectivity connectivity;
-  SAC_RETURN_IF_ERROR(WriteConnectivity(clip, out, connectivity));
-  stream.order = connectivity.order;
-  Vec3f low = clip.frames[0][0], high = low;
-  for (const Positions& frame : clip.frames) {
+Status Encode(const std::vector<Positions>& frames, double bits, ByteWriter& out) {
+  Vec3f low = frames[0][0], high = low;
+  for (const Positions& frame : frames) {
     for (const Vec3f& p : frame) {
       for (std::size_t a = 0; a < 3; ++a) {
         low[a] = std::min(low[a], p[a]);
@@ -34,16 +26,15 @@ Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stre
   }
   const float extent = std::max({high[0] - low[0], high[1] - low[1], high[2] - low[2], 1e-30f});
   const float step = extent / static_cast<float>((1 << static_cast<int>(bits)) - 1);
-  out.Varint(static_cast<std::uint32_t>(clip.frames.size()));
   for (const float value : {low[0], low[1], low[2], step}) out.F32(value);
 
-  const std::size_t n = stream.order.size();
+  const std::size_t n = frames.front().size();
   std::vector<Packed> last(n), difference(n);
   std::vector<std::uint8_t> code(meshopt_encodeVertexBufferBound(n, sizeof(Packed))), all;
-  for (const Positions& frame : clip.frames) {
+  for (const Positions& frame : frames) {
     for (std::size_t v = 0; v < n; ++v) {
       for (std::size_t a = 0; a < 3; ++a) {
-        const auto value = static_cast<std::uint16_t>(std::lround((frame[stream.order[v]][a] - low[a]) / step));
+        const auto value = static_cast<std::uint16_t>(std::lround((frame[v][a] - low[a]) / step));
         difference[v][a] = static_cast<std::uint16_t>(value - last[v][a]);
         last[v][a] = value;
       }
@@ -59,31 +50,24 @@ Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stre
   if (ZSTD_isError(size) != 0) return Status::Unsupported(std::string("zstd: ") + ZSTD_getErrorName(size));
   out.Varint(static_cast<std::uint32_t>(all.size()));
   out.Bytes({packed.data(), size});
-  stream.bytes = out.bytes();
   return Status::Ok();
 }
 
-Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
-  ByteReader in(bytes);
-  Connectivity connectivity;
-  SAC_RETURN_IF_ERROR(ReadConnectivity(in, connectivity));
-  const std::uint32_t frames = in.Varint();
+Status Decode(ByteReader& in, std::vector<Positions>& frames) {
   const Vec3f low{in.F32(), in.F32(), in.F32()};
   const float step = in.F32();
   std::vector<std::uint8_t> all(in.Varint());
   const auto packed = in.Bytes(in.remaining());
   const std::size_t size = ZSTD_decompress(all.data(), all.size(), packed.data(), packed.size());
   if (ZSTD_isError(size) != 0 || size != all.size()) return Status::Corrupt("zstd");
-  clip.triangles = connectivity.triangles;
-  const std::size_t n = connectivity.vertices;
+  const std::size_t n = frames.front().size();
   std::vector<Packed> last(n), difference(n);
   ByteReader code(all);
-  for (std::uint32_t f = 0; f < frames; ++f) {
+  for (Positions& positions : frames) {
     const auto frame = code.Bytes(code.Varint());
     if (meshopt_decodeVertexBuffer(difference.data(), n, sizeof(Packed), frame.data(), frame.size()) != 0) {
       return Status::Corrupt("meshoptimizer");
     }
-    Positions& positions = clip.frames.emplace_back(n);
     for (std::size_t v = 0; v < n; ++v) {
       for (std::size_t a = 0; a < 3; ++a) {
         last[v][a] = static_cast<std::uint16_t>(last[v][a] + difference[v][a]);
@@ -103,11 +87,11 @@ std::string Version() {
 }  // namespace sac::bench
 
 int main(int argc, char** argv) {
-  return sac::bench::RunPeer(argc, argv,
-                             {"meshoptimizer on frame differences, zstd",
-                              sac::bench::Version(),
-                              "bits",
-                              {"7", "8", "9", "10", "11", "12", "13", "14"},
-                              sac::bench::Encode,
-                              sac::bench::Decode});
+  return sac::bench::RunArrayPeer(argc, argv,
+                                  {"meshoptimizer on frame differences, zstd",
+                                   sac::bench::Version(),
+                                   "bits",
+                                   {"7", "8", "9", "10", "11", "12", "13", "14"},
+                                   sac::bench::Encode,
+                                   sac::bench::Decode});
 }

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <charconv>
-#include <cmath>
 #include <cstdio>
 #include <exception>
 #include <memory>
@@ -136,19 +135,6 @@ bool ParseNumber(const std::string& text, double& value) {
   if (result.ec != std::errc() || result.ptr != text.data() + text.size()) return false;
   value = number;
   return true;
-}
-
-double Diagonal(const PeerClip& clip) {
-  Vec3f low = clip.frames.front().front(), high = low;
-  for (const Vec3f& p : clip.frames.front()) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      low[a] = std::min(low[a], p[a]);
-      high[a] = std::max(high[a], p[a]);
-    }
-  }
-  return std::hypot(static_cast<double>(high[0]) - static_cast<double>(low[0]),
-                    static_cast<double>(high[1]) - static_cast<double>(low[1]),
-                    static_cast<double>(high[2]) - static_cast<double>(low[2]));
 }
 
 }  // namespace sac::bench

@@ -42,7 +42,4 @@ int RunPeer(int argc, char** argv, const Peer& peer);
 // A setting that is a number. False, and `value` left alone, when it is none.
 bool ParseNumber(const std::string& text, double& value);
 
-// Of the first frame's bounding box.
-double Diagonal(const PeerClip& clip);
-
 }  // namespace sac::bench

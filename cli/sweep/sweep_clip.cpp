@@ -10,7 +10,7 @@
 #include "cli/frame_pattern.h"
 #include "cli/mesh_file.h"
 #include "cli/sweep/content_key.h"
-#include "codec/encode/error_bound.h"
+#include "codec/bounding_box.h"
 
 namespace sac {
 namespace {
@@ -59,7 +59,7 @@ Status PrepareClip(const std::vector<std::string>& inputs, const std::string& di
   clip.frames = input->frame_count();
   clip.vertices = mesh.positions.size();
   clip.triangles = mesh.triangles.size();
-  clip.diagonal = BoxDiagonal(mesh.positions);
+  clip.diagonal = BoundingBox(mesh.positions).diagonal();
   clip.display = MakeDisplayMesh(mesh, clip.frames);
 
   ContentKey key;

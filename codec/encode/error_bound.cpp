@@ -1,7 +1,6 @@
 #include "codec/encode/error_bound.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -34,11 +33,6 @@ double LargestCoordinate(const Positions& positions) {
   return largest;
 }
 
-double BoxDiagonal(const Positions& positions) {
-  const std::array<double, 3> size = BoundingBox(positions).size();
-  return std::sqrt(size[0] * size[0] + size[1] * size[1] + size[2] * size[2]);
-}
-
 double LeastMaxError(const Positions& first_frame) {
   // 1e-30: a tenth of it is still an ordinary float.
   return std::max(LargestCoordinate(first_frame) * kHalfUlp / 2, 1e-30);
@@ -63,7 +57,7 @@ double DistanceAfterRounding(const Eigen::RowVector3d& exact, const Eigen::RowVe
 }
 
 BoundedSettings SettingsOfMaxError(double max_error, const Positions& first_frame) {
-  double diagonal = BoxDiagonal(first_frame);
+  double diagonal = BoundingBox(first_frame).diagonal();
   if (diagonal == 0) diagonal = std::max(LargestCoordinate(first_frame), max_error);  // a single point
   const double bound = max_error / diagonal;
   // Finer smooth planes pay as more detail rests on them, up to a point.

@@ -10,9 +10,6 @@ namespace sac {
 // The largest magnitude of a coordinate.
 double LargestCoordinate(const Positions& positions);
 
-// The diagonal of the bounding box, model units.
-double BoxDiagonal(const Positions& positions);
-
 // The smallest bound on the error that an encoder promises for a clip of this first frame: from about half the spacing
 // of its largest floats on decoded floats are the input's own, and there is nothing left to promise.
 double LeastMaxError(const Positions& first_frame);
