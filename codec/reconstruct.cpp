@@ -85,7 +85,7 @@ bool Reconstructor::StartGroup() {
 }
 
 bool Reconstructor::StartFrame(bool intra) {
-  if (intra || header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kKey)) return UseKeyReference();
+  if (intra || !header_.references_previous()) return UseKeyReference();
   reference_is_key_ = false;
   return poisson_.SetReference(aligned_, CotangentWeights(aligned_, shape_.triangles, shape_.edges));
 }

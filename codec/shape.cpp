@@ -46,7 +46,7 @@ Status CheckSystems(const SequenceHeader& header, const Limits& limits, Shape& s
   for (const PlaneLayout& layout : {shape.layouts[kMotion], shape.layouts[kDisplacement]}) {
     frame += static_cast<double>(layout.size()) * vertices;
   }
-  if (header.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious)) frame += probe.size().work;
+  if (header.references_previous()) frame += probe.size().work;
   if (frame > limits.frame_work) return Status::Limit("a frame takes more work than the limit");
   return Status::Ok();
 }

@@ -42,7 +42,7 @@ Predictor::Predictor(const SequenceHeader& header, const PlaneLayouts& layouts)
 bool Predictor::Predicts(std::size_t plane) const {
   // A correction has nothing in common with another frame's. Against the previous reconstruction, the other planes are
   // differences already (Wang et al. 2015, section 4).
-  return plane != kCorrection && header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kKey);
+  return plane != kCorrection && !header_.references_previous();
 }
 
 const FrameCoefficients* Predictor::FrameAt(std::int64_t display) const {

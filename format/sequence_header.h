@@ -43,6 +43,7 @@ struct SequenceHeader {
   float rotation_step = 0;      // of the rigid motion, radians
   float translation_step = 0;   // of the rigid motion, model units
 
+  bool references_previous() const { return reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious); }
   double frames_per_second() const {
     return static_cast<double>(frame_rate_numerator) / static_cast<double>(frame_rate_denominator);
   }

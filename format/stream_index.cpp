@@ -1,6 +1,5 @@
 #include "format/stream_index.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "format/bytes.h"

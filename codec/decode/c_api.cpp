@@ -1,9 +1,7 @@
 #include <algorithm>
 #include <cstring>
 #include <exception>
-#include <new>
 #include <string>
-#include <utility>
 
 #include "codec/decode/decoder.h"
 #include "codec/decode/sac.h"

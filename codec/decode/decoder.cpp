@@ -72,9 +72,6 @@ class Decoder::Impl {
   Status ContinueAt(std::uint32_t frame);
 
   bool FrameWaits() const { return source_ && next_out_ < source_->frames().end(); }
-  bool ReferencesPrevious() const {
-    return header->reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious);
-  }
   void Describe(std::uint32_t frame, double time, const Positions& positions, FrameInfo& info) const;
   Status Latch(Status status) {
     if (!status.ok()) error_ = status;
@@ -328,7 +325,7 @@ Status Decoder::Impl::Receive(Positions& positions, FrameInfo& info) {
     }
     const auto frame = static_cast<std::uint32_t>(next_out_++);
     const bool shown = frame >= wanted_ && frame % settings.frame_step == 0;
-    if (!shown && !ReferencesPrevious()) continue;
+    if (!shown && !header->references_previous()) continue;
     const auto reconstruct = [&] { return source_->Reconstruct(frame, settings.frame_step, positions); };
     if (const Status status = Guard(reconstruct); !status.ok()) {
       if (!settings.skip_damage) return status;
@@ -353,7 +350,8 @@ Status Decoder::Impl::Interpolate(double time, Positions& positions, FrameInfo& 
   if (error_) return *error_;
   if (!(time >= 0 && time <= 0xfffffffeu)) return Status::InvalidArgument("a time that is no frame's");
   if (!source_) return Status::NeedMoreData();
-  if (ReferencesPrevious()) return Status::Unsupported("frames measured against the frame before have none between");
+  if (header->references_previous())
+    return Status::Unsupported("frames measured against the frame before have none between");
   if (total_frames_.value_or(0) > 0) time = std::min(time, *total_frames_ - 1.0);
   const auto frame = static_cast<std::uint32_t>(time), after = static_cast<std::uint32_t>(std::ceil(time));
   while (!source_->Holds(frame) || !source_->Holds(after)) {
@@ -422,11 +420,7 @@ Status Decoder::Impl::Finish() {
   const auto truncated = [this] { return Truncated(packets_.position(), next_frame_.value_or(0)); };
   if (!settings.skip_damage) return ended_ && !FrameWaits() ? Status::Ok() : Latch(truncated());
   finished_ = true;
-  const Status status = Guard([this] {
-    while (!FrameWaits() && CanAdvance()) SAC_RETURN_IF_ERROR(AdvanceAlone());
-    return Status::Ok();
-  });
-  if (!status.ok()) return status;
+  while (!FrameWaits() && CanAdvance()) SAC_RETURN_IF_ERROR(AdvanceAlone());
   return ended_ || FrameWaits() ? Status::Ok() : truncated();
 }
 

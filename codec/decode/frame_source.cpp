@@ -32,8 +32,7 @@ FrameCoefficients Between(const FrameCoefficients& a, const FrameCoefficients& b
 
 FrameSource::FrameSource(const Shape& shape, const SequenceHeader& header, unsigned threads)
     : shape_(shape), header_(header) {
-  const bool previous = header.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious);
-  reconstructors_.resize(previous ? 1 : std::max(1u, threads));
+  reconstructors_.resize(header.references_previous() ? 1 : std::max(1u, threads));
 }
 
 Status FrameSource::Take(CodedFrames frames, bool starts_group) {

@@ -29,7 +29,7 @@ Status GroupParser::ParseFrame(const FrameSlot& slot, RangeDecoder& range, Frame
                                bool& intra) const {
   FrameSyntax frame;
   if (!coder.Code(range, slot, frame)) return Status::Corrupt("malformed coefficients");
-  if (ReferencesPrevious() && !frame.intra() && frame.slot.references != slot.references) {
+  if (header_.references_previous() && !frame.intra() && frame.slot.references != slot.references) {
     return Status::Corrupt("not predicted from the frame before");
   }
   intra = frame.intra();
@@ -47,7 +47,8 @@ Status GroupParser::ParseCut(const GroupSyntax& group, std::span<const std::uint
 Status GroupParser::Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, bool cut,
                           CodedFrames& out) const {
   SAC_RETURN_IF_ERROR(CheckSize(group.frames));
-  if (ReferencesPrevious() && group.pyramid != 1) return Status::Corrupt("group: B-frames against the previous frame");
+  if (header_.references_previous() && group.pyramid != 1)
+    return Status::Corrupt("group: B-frames against the previous frame");
   RangeDecoder range(code);
   FrameCoder<RangeDecoder> coder(header_, layouts_);
   const std::vector<FrameSlot> structure = GroupStructure(group.frames, group.pyramid);

@@ -47,9 +47,6 @@ class GroupParser {
   bool is_open() const { return open_.has_value(); }
 
  private:
-  bool ReferencesPrevious() const {
-    return header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious);
-  }
   Status CheckSize(std::uint32_t frames) const;
   Status ParseFrame(const FrameSlot& slot, RangeDecoder& range, FrameCoder<RangeDecoder>& coder, bool& intra) const;
   Status Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, bool cut, CodedFrames& out) const;

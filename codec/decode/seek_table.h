@@ -21,8 +21,8 @@ class SeekTable {
     if (at == places_.end() || at->byte != byte) places_.insert(at, {byte, first_frame});
   }
 
-  // All of them.
-  void Take(const StreamIndex& index) {
+  // All of them; returns the byte after the last group.
+  std::uint64_t Take(const StreamIndex& index) {
     places_.clear();
     std::uint64_t byte = index.first_group;
     std::uint32_t frame = 0;
@@ -31,6 +31,7 @@ class SeekTable {
       byte += group.bytes;
       frame += group.frames;
     }
+    return byte;
   }
 
   // Where to read on for `frame`: the last known group that begins with it or before.
@@ -42,10 +43,7 @@ class SeekTable {
   // Whether `index` says the same of a stream whose end packet begins at `end`.
   bool Matches(const StreamIndex& index, std::uint64_t end) const {
     SeekTable other;
-    other.Take(index);
-    std::uint64_t byte = index.first_group;
-    for (const StreamIndex::Group& group : index.groups) byte += group.bytes;
-    return byte == end && places_ == other.places_;
+    return other.Take(index) == end && places_ == other.places_;
   }
 
  private:

@@ -65,7 +65,7 @@ class GroupEncoder {
                       const Predictor& predictor, FrameSyntax& frame);
   // Whether exact + error, rounded to floats, is within the bound.
   Status CheckBound(const PositionMatrix& exact, const PositionMatrix& error) const;
-  bool UsesKeyReference() const { return header_.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kKey); }
+  bool UsesKeyReference() const { return !header_.references_previous(); }
 
   const Shape& shape_;
   SequenceHeader header_;

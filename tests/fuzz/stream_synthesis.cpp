@@ -112,7 +112,7 @@ void FillFrame(FrameSyntax& frame, std::uint32_t index, bool previous, std::mt19
 
 Bytes AnyGroup(const SequenceHeader& h, const PlaneLayouts& layouts, std::uint32_t first, std::uint32_t frames,
                std::mt19937& random) {
-  const bool previous = h.reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious);
+  const bool previous = h.references_previous();
   const std::uint32_t pyramid = previous ? 1 : 1 + AnySize(random) / 2;
   RangeEncoder range;
   FrameCoder<RangeEncoder> coder(h, layouts);
