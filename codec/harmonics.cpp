@@ -105,19 +105,24 @@ bool ExactHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::V
 
 // One step of inverse iteration, Y = (L + D)^-1 D H, and the Ritz vectors of its span: what radial functions mix of
 // parts near in space but far along the surface comes apart.
-bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, EigenPairs& pairs) {
+bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, const RowMatrix& functions,
+            EigenPairs& out) {
   Eigen::SparseMatrix<double> shifted = laplacian;
   for (Eigen::Index i = 0; i < shifted.rows(); ++i) shifted.coeffRef(i, i) += mass[i];
   SparseCholesky solver;
   if (!Factorize(solver, shifted)) return false;
-  const Eigen::MatrixXd weighted = mass.asDiagonal() * pairs.vectors;
-  const Eigen::MatrixXd image = solver.solve(weighted);
-  // With (L + D) Y = D H, Y^T L Y = Y^T D H - Y^T D Y.
-  const Eigen::MatrixXd gram = image.transpose() * mass.asDiagonal() * image;
-  const Eigen::MatrixXd stiffness = image.transpose() * weighted - gram;
+  RowMatrix weighted = mass.asDiagonal() * functions;
+  RowMatrix image = weighted;
+  solver.SolveInPlace(image);
+  // With (L + D) Y = D H, Y^T L Y = Y^T D H - Y^T D Y: symmetric, so their lower triangles are enough.
+  Eigen::MatrixXd stiffness(image.cols(), image.cols()), gram(image.cols(), image.cols());
+  stiffness.triangularView<Eigen::Lower>() = image.transpose() * weighted;
+  weighted = mass.asDiagonal() * image;
+  gram.triangularView<Eigen::Lower>() = image.transpose() * weighted;
+  stiffness.triangularView<Eigen::Lower>() -= gram;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(stiffness, gram);
   if (ritz.info() != Eigen::Success) return false;
-  pairs = {ritz.eigenvalues(), image * ritz.eigenvectors()};
+  out = {ritz.eigenvalues(), image * ritz.eigenvectors()};
   return true;
 }
 
@@ -133,8 +138,9 @@ bool ReducedHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen:
   standard = gram.matrixL().solve(standard).eval();
   standard = (standard + standard.transpose()).eval() / 2;
   if (!SmallestEigenpairs<DenseShiftSolve>(standard, count, out)) return false;
-  out.vectors = functions * gram.matrixU().solve(out.vectors).eval();
-  return Refine(laplacian, mass, out);
+  const Eigen::SparseMatrix<double, Eigen::RowMajor> rows = functions;
+  const RowMatrix mixed = gram.matrixU().solve(out.vectors);
+  return Refine(laplacian, mass, rows * mixed, out);
 }
 
 bool ComputeComponent(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,

@@ -32,7 +32,7 @@ class PoissonSystem {
   Eigen::SparseMatrix<double> matrix_;
   SparseCholesky solver_;
   bool analyzed_ = false;
-  PositionMatrix right_side_;
+  RowMatrix right_side_;
   PositionMatrix solution_;
 };
 

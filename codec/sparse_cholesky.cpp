@@ -1,5 +1,6 @@
 #include "codec/sparse_cholesky.h"
 
+#include <algorithm>
 #include <vector>
 
 namespace sac {
@@ -39,6 +40,37 @@ bool SparseCholesky::Analyze(const Matrix& matrix, const FactorSize& most) {
 bool SparseCholesky::Factorize(const Matrix& matrix) {
   factorize(matrix);
   return info() == Eigen::Success;
+}
+
+template <int kColumns>
+void SparseCholesky::SolveBlocks(RowMatrix& columns) const {
+  using Row = Eigen::Matrix<double, 1, kColumns>;
+  const auto& below = m_matrix;  // the factor without its diagonal of ones
+  Eigen::Matrix<double, Eigen::Dynamic, kColumns, Eigen::RowMajor> x(columns.rows(), kColumns);
+  for (Eigen::Index first = 0; first < columns.cols(); first += kColumns) {
+    const Eigen::Index count = std::min<Eigen::Index>(kColumns, columns.cols() - first);
+    x.rightCols(kColumns - count).setZero();
+    x.leftCols(count) = m_P * columns.middleCols(first, count);
+    for (Eigen::Index k = 0; k < x.rows(); ++k) {
+      const Row value = x.row(k);
+      for (CholMatrixType::InnerIterator it(below, k); it; ++it) x.row(it.index()) -= it.value() * value;
+    }
+    x.array().colwise() /= m_diag.array();
+    for (Eigen::Index k = x.rows() - 1; k >= 0; --k) {
+      Row value = x.row(k);
+      for (CholMatrixType::InnerIterator it(below, k); it; ++it) value -= it.value() * x.row(it.index());
+      x.row(k) = value;
+    }
+    columns.middleCols(first, count) = m_Pinv * x.leftCols(count);
+  }
+}
+
+void SparseCholesky::SolveInPlace(RowMatrix& columns) const {
+  if (columns.cols() <= 4) {
+    SolveBlocks<4>(columns);
+  } else {
+    SolveBlocks<8>(columns);
+  }
 }
 
 }  // namespace sac

@@ -7,6 +7,8 @@
 
 namespace sac {
 
+using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
+
 // What a factorization takes: values below the diagonal of the factor, of 12 bytes each, and multiplications, about.
 struct FactorSize {
   std::uint64_t values = std::numeric_limits<std::int32_t>::max();
@@ -28,7 +30,12 @@ class SparseCholesky : private Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>
   const FactorSize& size() const { return size_; }
   using Base::solve;
 
+  // X of A X = B, in place of B: faster than solve(), which reads the factor again for each column.
+  void SolveInPlace(RowMatrix& columns) const;
+
  private:
+  template <int kColumns>
+  void SolveBlocks(RowMatrix& columns) const;
   // False as soon as there is more than `most`.
   bool Count(const CholMatrixType& ordered, const FactorSize& most);
 
