@@ -8,6 +8,7 @@
 #include <cmath>
 #include <limits>
 #include <string>
+#include <utility>
 
 #include "codec/radial_functions.h"
 #include "codec/sparse_cholesky.h"
@@ -53,7 +54,8 @@ class ShiftSolve {
   Eigen::Index rows() const { return matrix_.rows(); }
   Eigen::Index cols() const { return matrix_.cols(); }
   void set_shift(double sigma) {
-    Matrix shifted = matrix_;
+    Matrix shifted;
+    shifted = matrix_;  // Eigen's copy constructor would lose memory when there is too little
     for (Eigen::Index i = 0; i < rows(); ++i) shifted.coeffRef(i, i) -= sigma;
     ok_ = Factorize(solver_, shifted);
   }
@@ -105,13 +107,15 @@ bool ExactHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::V
 
 // One step of inverse iteration, Y = (L + D)^-1 D H, and the Ritz vectors of its span: what radial functions mix of
 // parts near in space but far along the surface comes apart.
-bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, const RowMatrix& functions,
+bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, RowMatrix functions,
             EigenPairs& out) {
-  Eigen::SparseMatrix<double> shifted = laplacian;
+  Eigen::SparseMatrix<double> shifted;
+  shifted = laplacian;
   for (Eigen::Index i = 0; i < shifted.rows(); ++i) shifted.coeffRef(i, i) += mass[i];
   SparseCholesky solver;
   if (!Factorize(solver, shifted)) return false;
-  RowMatrix weighted = mass.asDiagonal() * functions;
+  RowMatrix& weighted = functions;  // one of the largest things there are
+  weighted.array().colwise() *= mass.array();
   RowMatrix image = weighted;
   solver.SolveInPlace(image);
   // With (L + D) Y = D H, Y^T L Y = Y^T D H - Y^T D Y: symmetric, so their lower triangles are enough.
@@ -122,6 +126,7 @@ bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd&
   stiffness.triangularView<Eigen::Lower>() -= gram;
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(stiffness, gram);
   if (ritz.info() != Eigen::Success) return false;
+  weighted.resize(0, 0);
   out = {ritz.eigenvalues(), image * ritz.eigenvectors()};
   return true;
 }
@@ -178,7 +183,7 @@ bool ComputeComponent(const EdgeList& edges, std::span<const double> weights, co
     return false;
   }
   out.eigenvalues = pairs.values.cwiseMax(0);
-  out.vectors = pairs.vectors;
+  out.vectors = std::move(pairs.vectors);
   // The constant function is known exactly.
   out.eigenvalues[0] = 0;
   out.vectors.col(0).setOnes();
@@ -219,6 +224,15 @@ double HarmonicsWork(double vertices, double harmonics, double samples) {
   const double products = reduced ? 10 * vertices * (harmonics * harmonics + samples) : 0;
   if (n <= kDenseSize || basis >= n) return products + 10 * n * n * n;
   return products + kUsualRestarts * basis * n * (reduced ? basis + n : basis);
+}
+
+double HarmonicsMemory(double vertices, double harmonics, double samples) {
+  constexpr double kValue = sizeof(double), kFunctions = 1000;  // a vertex, of the radial functions around it
+  if (harmonics == 1) return kValue * vertices;
+  const bool reduced = samples > 0 && samples < vertices;
+  const double n = reduced ? samples : vertices, basis = std::min(2 * harmonics + kSpareVectors, n);
+  const double kept = kValue * vertices * harmonics, problem = kValue * (n <= kDenseSize ? 4 * n * n : n * basis);
+  return reduced ? 4 * kept + kFunctions * vertices + problem + 6 * kValue * n * n : 2 * kept + problem;
 }
 
 Status ComputeHarmonics(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,

@@ -36,6 +36,9 @@ bool SameFingerprint(const std::array<float, 2>& a, const std::array<float, 2>& 
 // Multiplications that the harmonics of a component of so many vertices take, about. `samples`: of the reduced basis.
 double HarmonicsWork(double vertices, double harmonics, double samples);
 
+// Bytes that they take, and their computation with them, at most, about.
+double HarmonicsMemory(double vertices, double harmonics, double samples);
+
 // Computes the basis as spec.md 6.4 defines it. `grid` holds the vertices' integer positions, `masses` and `weights`
 // are of the decoded first frame; the components may also be patches. kCorrupt when an eigenvalue problem does not
 // converge.

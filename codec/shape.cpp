@@ -10,10 +10,14 @@ namespace sac {
 
 namespace {
 
+constexpr std::uint64_t kFactorMemory = 12;  // a value: a double and its row
+
 // Judges the sizes of the harmonics, and adds up their work.
 Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> components,
                       std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic, const Limits& limits,
-                      double& work) {
+                      Shape& shape) {
+  double& work = shape.work;
+  double memory = static_cast<double>(MeshMemory(header.vertices, header.triangles));
   std::uint64_t values = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] == 0 || counts[i] > components[i].count) {
@@ -21,14 +25,20 @@ Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> c
     }
     if (counts[i] > limits.harmonics) return Status::Limit("more harmonics in a component than the limit");
     values += static_cast<std::uint64_t>(counts[i]) * components[i].count;
-    work += HarmonicsWork(components[i].count, counts[i], static_cast<double>(samples_per_harmonic) * counts[i]);
+    const double samples = static_cast<double>(samples_per_harmonic) * counts[i];
+    work += HarmonicsWork(components[i].count, counts[i], samples);
+    memory += HarmonicsMemory(components[i].count, counts[i], samples);
   }
   if (header.detail_step > 0) {
     work += 10.0 * header.patch_size * header.patch_size * header.vertices;
     values += static_cast<std::uint64_t>(header.patch_size) * header.vertices;
+    memory += static_cast<double>(sizeof(double)) * header.patch_size * header.vertices;
   }
   if (work > limits.basis_work) return Status::Limit("the harmonic basis takes more work than the limit");
   if (values > limits.basis_values) return Status::Limit("the harmonic basis is larger than the limit");
+  if (memory > static_cast<double>(limits.memory))
+    return Status::Limit("the harmonic basis takes more memory than the limit");
+  shape.memory = static_cast<std::uint64_t>(memory);
   return Status::Ok();
 }
 
@@ -36,12 +46,16 @@ Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> c
 // before another.
 Status CheckSystems(const SequenceHeader& header, const Limits& limits, Shape& shape) {
   const auto vertices = static_cast<std::uint32_t>(shape.vertices());
-  const FactorSize most{limits.factor_values, (limits.basis_work - shape.work) / 3};
+  const FactorSize most{std::min(limits.factor_values, (limits.memory - shape.memory) / (2 * kFactorMemory)),
+                        (limits.basis_work - shape.work) / 3};
   SparseCholesky probe;
   if (!probe.Analyze(LaplacianMatrix(shape.edges.ends, shape.weights, 0, vertices), most)) {
     return Status::Limit("the mesh is too entangled: its linear system takes more work or memory than the limit");
   }
   shape.work += 3 * probe.size().work;
+  shape.memory += 2 * kFactorMemory * probe.size().values;
+  if (MostGroupValues(limits, shape) < FrameValues(shape.layouts))
+    return Status::Limit("a frame takes more memory than the limit");
   double frame = 6.0 * static_cast<double>(probe.size().values);
   for (const PlaneLayout& layout : {shape.layouts[kMotion], shape.layouts[kDisplacement]}) {
     frame += static_cast<double>(layout.size()) * vertices;
@@ -57,6 +71,10 @@ double AllowedWork(const Limits& limits, std::size_t i_frame_bytes) {
   return std::min(limits.basis_work, limits.free_work + limits.work_per_byte * static_cast<double>(i_frame_bytes));
 }
 
+std::uint64_t MostGroupValues(const Limits& limits, const Shape& shape) {
+  return std::min(limits.group_values, (limits.memory - std::min(limits.memory, shape.memory)) / kCoefficientMemory);
+}
+
 Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<const std::uint32_t> counts,
                   std::uint32_t samples_per_harmonic, const Limits& limits, Shape& shape) {
   if (counts.size() != mesh.components.size()) {
@@ -64,7 +82,7 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
                            std::to_string(counts.size()));
   }
   shape.work = 0;
-  SAC_RETURN_IF_ERROR(CheckHarmonics(header, mesh.components, counts, samples_per_harmonic, limits, shape.work));
+  SAC_RETURN_IF_ERROR(CheckHarmonics(header, mesh.components, counts, samples_per_harmonic, limits, shape));
 
   shape.triangles = std::move(mesh.triangles);
   shape.components = std::move(mesh.components);

@@ -37,13 +37,17 @@ struct Shape {
   HarmonicBasis basis;
   HarmonicBasis patch_basis;  // empty without a detail plane
   PlaneLayouts layouts;
-  double work = 0;  // multiplications that all this took, about
+  double work = 0;           // multiplications that all this took, about
+  std::uint64_t memory = 0;  // bytes that it takes, and took meanwhile, about
 
   std::size_t vertices() const { return static_cast<std::size_t>(positions.rows()); }
 };
 
 // What an I-frame packet of so many bytes may ask for (spec.md 9).
 double AllowedWork(const Limits& limits, std::size_t i_frame_bytes);
+
+// How many values of planes a group may have, with what the shape leaves of the memory.
+std::uint64_t MostGroupValues(const Limits& limits, const Shape& shape);
 
 // Builds the shape. `counts`: harmonics per component, one for each component of `mesh`, at most its vertices.
 // kLimit when the basis or a frame would take more memory or work than `limits` allows, which is judged before either

@@ -16,6 +16,8 @@ struct Limits {
   std::uint64_t basis_values =
       1u << 28;  // doubles in all harmonics together: sum over components of vertices x harmonics
   std::uint64_t factor_values = 1u << 28;  // of the factorized Laplacian, 12 bytes each
+  // Bytes that a decoder holds at a time, about: of the mesh, its basis, its factor and a group's coefficients.
+  std::uint64_t memory = std::uint64_t{1} << 33;
   // Multiplications, about, for what is derived from the I-frame (spec.md 9): at most basis_work, and at most
   // free_work + work_per_byte * the bytes of its packet.
   double basis_work = 5e11;
@@ -23,5 +25,13 @@ struct Limits {
   double work_per_byte = 4e6;
   double frame_work = 1e11;  // likewise, for each frame
 };
+
+// Of a mesh and what is derived from it but its basis and factor (spec.md 9): bytes at most, about.
+constexpr std::uint64_t MeshMemory(std::uint64_t vertices, std::uint64_t triangles) {
+  return 500 * vertices + 350 * triangles;
+}
+
+// Of a value of a plane: the coefficient and its residual.
+constexpr std::uint64_t kCoefficientMemory = 8;
 
 }  // namespace sac

@@ -94,9 +94,8 @@ Status PacketReader::TakeTag() {
     size = tag - 1;
     crc_size_ = 1;
   }
-  if (size > limits_.packet_bytes) {
-    return Status::Limit("a packet of " + std::to_string(size) + " bytes, the limit is " +
-                         std::to_string(limits_.packet_bytes));
+  if (const auto most = std::min<std::uint64_t>(limits_.packet_bytes, limits_.memory); size > most) {
+    return Status::Limit("a packet of " + std::to_string(size) + " bytes, the limit is " + std::to_string(most));
   }
   needed_ = tag_size_ + size + crc_size_;
   return Status::Ok();

@@ -1,5 +1,5 @@
-// Decodes with the n-th allocation failing, for one n after another: an error that says so, and nothing lost. A program
-// of its own, because it replaces operator new. spec.md 11, R60.
+// Decodes with the n-th allocation failing, for one n after another: an error that says so, and nothing lost. spec.md
+// 11, R60.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -13,60 +13,7 @@
 #include <vector>
 
 #include "codec/decode/decoder.h"
-
-namespace {
-
-long g_until_failure = -1;  // allocations that still succeed; none fails while negative
-bool g_fail_on = false;     // and all after the first failure
-long g_allocations = 0;
-long g_living = 0;
-
-void* Allocate(std::size_t size, std::size_t alignment = 0) {
-  if (g_until_failure == 0) {
-    if (!g_fail_on) g_until_failure = -1;
-    return nullptr;
-  }
-  if (g_until_failure > 0) --g_until_failure;
-  ++g_allocations;
-  void* const memory = alignment > 0 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
-                                     : std::malloc(size > 0 ? size : 1);
-  if (memory) ++g_living;
-  return memory;
-}
-
-void* AllocateOrThrow(std::size_t size, std::size_t alignment = 0) {
-  void* const memory = Allocate(size, alignment);
-  if (!memory) throw std::bad_alloc();
-  return memory;
-}
-
-void Release(void* memory) noexcept {
-  if (!memory) return;
-  --g_living;
-  std::free(memory);
-}
-
-}  // namespace
-
-void* operator new(std::size_t size) { return AllocateOrThrow(size); }
-void* operator new[](std::size_t size) { return AllocateOrThrow(size); }
-void* operator new(std::size_t size, std::align_val_t a) { return AllocateOrThrow(size, static_cast<std::size_t>(a)); }
-void* operator new[](std::size_t size, std::align_val_t a) {
-  return AllocateOrThrow(size, static_cast<std::size_t>(a));
-}
-// For want of this memory std::stable_sort only gets slower.
-void* operator new(std::size_t size, const std::nothrow_t&) noexcept { return Allocate(size); }
-void* operator new[](std::size_t size, const std::nothrow_t&) noexcept { return Allocate(size); }
-void operator delete(void* memory) noexcept { Release(memory); }
-void operator delete[](void* memory) noexcept { Release(memory); }
-void operator delete(void* memory, std::size_t) noexcept { Release(memory); }
-void operator delete[](void* memory, std::size_t) noexcept { Release(memory); }
-void operator delete(void* memory, std::align_val_t) noexcept { Release(memory); }
-void operator delete[](void* memory, std::align_val_t) noexcept { Release(memory); }
-void operator delete(void* memory, std::size_t, std::align_val_t) noexcept { Release(memory); }
-void operator delete[](void* memory, std::size_t, std::align_val_t) noexcept { Release(memory); }
-void operator delete(void* memory, const std::nothrow_t&) noexcept { Release(memory); }
-void operator delete[](void* memory, const std::nothrow_t&) noexcept { Release(memory); }
+#include "tests/counted_memory.h"
 
 namespace sac {
 namespace {
@@ -107,9 +54,9 @@ struct Trial {
 // `fails`: how many allocations succeed before the one that fails, -1 for none; and all after it if `on`.
 Trial Try(const Bytes& stream, long fails, bool on) {
   Trial trial;
-  const long living = g_living, before = g_allocations;
-  g_until_failure = fails;
-  g_fail_on = on;
+  const long living = counted_memory.living, before = counted_memory.allocations;
+  counted_memory.until_failure = fails;
+  counted_memory.fail_on = on;
   try {
     Decoder decoder;
     trial.made = true;
@@ -117,9 +64,9 @@ Trial Try(const Bytes& stream, long fails, bool on) {
   } catch (const std::bad_alloc&) {
     trial.threw = true;
   }
-  g_until_failure = -1;
-  trial.allocations = g_allocations - before;
-  trial.lost = g_living - living;
+  counted_memory.until_failure = -1;
+  trial.allocations = counted_memory.allocations - before;
+  trial.lost = counted_memory.living - living;
   return trial;
 }
 

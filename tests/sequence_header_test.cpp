@@ -67,6 +67,7 @@ TEST(SequenceHeader, ExtremesComeBack) {
   h.displacement_step = h.rotation_step = h.translation_step = FLT_MAX;
   Limits limits;
   limits.vertices = limits.triangles = 0xffffffffu;
+  limits.memory = ~std::uint64_t{0};
   ExpectRoundTrip(h, limits);
 
   h = Valid();

@@ -100,6 +100,7 @@ void sac_settings_init(sac_settings* settings) {
   settings->max_group_values = limits.group_values;
   settings->max_basis_values = limits.basis_values;
   settings->max_factor_values = limits.factor_values;
+  settings->max_memory = limits.memory;
   settings->max_basis_work = limits.basis_work;
   settings->max_free_work = limits.free_work;
   settings->max_work_per_byte = limits.work_per_byte;
@@ -126,6 +127,7 @@ sac_decoder* sac_decoder_open(const sac_settings* settings) {
   to.limits.group_values = s.max_group_values;
   to.limits.basis_values = s.max_basis_values;
   to.limits.factor_values = s.max_factor_values;
+  to.limits.memory = s.max_memory;
   to.limits.basis_work = s.max_basis_work;
   to.limits.free_work = s.max_free_work;
   to.limits.work_per_byte = s.max_work_per_byte;

@@ -197,7 +197,7 @@ Status Decoder::Impl::TakeIFrame(std::span<const std::uint8_t> payload) {
   SAC_RETURN_IF_ERROR(DecodeIFrame(payload));
   i_frame_crc_ = crc;
   i_frame_size_ = payload.size();
-  parser_.emplace(*header, shape_.layouts, settings.limits);
+  parser_.emplace(*header, shape_, settings.limits);
   source_.emplace(shape_, *header, settings.threads);
   places_.Start(packets_.position());
   return Status::Ok();

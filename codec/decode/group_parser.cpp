@@ -15,11 +15,11 @@ Status AtFrame(std::uint32_t frame, const Status& s) {
 }  // namespace
 
 Status GroupParser::CheckSize(std::uint32_t frames) const {
-  if (frames > limits_.frames_per_group) {
+  if (frames > frames_per_group_) {
     return Status::Limit(std::to_string(frames) + " frames in a group, the limit is " +
-                         std::to_string(limits_.frames_per_group));
+                         std::to_string(frames_per_group_));
   }
-  if (frames * FrameValues(layouts_) > limits_.group_values) {
+  if (frames * FrameValues(layouts_) > group_values_) {
     return Status::Limit("a group holds more coefficients than the limit");
   }
   return Status::Ok();

@@ -31,8 +31,12 @@ struct CodedFrames {
 // Reads the frames of groups (spec.md 6.2, 6.3): bytes to integers.
 class GroupParser {
  public:
-  GroupParser(const SequenceHeader& header, const PlaneLayouts& layouts, const Limits& limits)
-      : header_(header), layouts_(layouts), limits_(limits) {}
+  // Both must outlive it.
+  GroupParser(const SequenceHeader& header, const Shape& shape, const Limits& limits)
+      : header_(header),
+        layouts_(shape.layouts),
+        frames_per_group_(limits.frames_per_group),
+        group_values_(MostGroupValues(limits, shape)) {}
 
   // A whole group. kCorrupt, with the frame's number; kLimit.
   Status Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, CodedFrames& out) const;
@@ -53,7 +57,8 @@ class GroupParser {
 
   const SequenceHeader& header_;
   const PlaneLayouts& layouts_;
-  const Limits& limits_;
+  const std::uint32_t frames_per_group_;
+  const std::uint64_t group_values_;
   std::optional<FrameCoder<RangeDecoder>> open_;
   std::uint32_t open_first_ = 0;
 };

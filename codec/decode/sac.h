@@ -55,6 +55,7 @@ typedef struct sac_settings {
   uint64_t max_group_values;
   uint64_t max_basis_values;
   uint64_t max_factor_values;
+  uint64_t max_memory; /* bytes of all that a decoder holds at a time, about */
   double max_basis_work;
   double max_free_work; /* of basis work, beside max_work_per_byte for each byte of the first frame */
   double max_work_per_byte;

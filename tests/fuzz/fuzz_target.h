@@ -33,6 +33,7 @@ inline Limits FuzzLimits() {
   limits.group_values = 1 << 17;
   limits.basis_values = 1 << 14;
   limits.factor_values = 1 << 14;
+  limits.memory = 1 << 24;
   limits.basis_work = 2e7;
   limits.free_work = 1e7;
   limits.work_per_byte = 1e4;

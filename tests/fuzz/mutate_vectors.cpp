@@ -32,12 +32,13 @@ Limits VectorLimits() {
   limits.vertices = 4000;
   limits.triangles = 8000;
   limits.harmonics = 200;
-  limits.frames_per_group = 64;
+  limits.frames_per_group = 2000;
   limits.packet_bytes = 1 << 16;
   limits.group_values = 1 << 20;
   limits.basis_values = 1 << 18;
   limits.factor_values = 1 << 18;
-  limits.basis_work = limits.free_work = 2e8;
+  limits.memory = 1 << 26;
+  limits.basis_work = limits.free_work = 5e8;
   limits.frame_work = 1e7;
   return limits;
 }
