@@ -10,6 +10,7 @@
 
 #include "codec/encode/error_bound.h"
 #include "codec/encode/quantizer.h"
+#include "codec/encode/reference_search.h"
 #include "codec/encode/rigid_fit.h"
 
 namespace sac {
@@ -19,10 +20,17 @@ namespace {
 // harmonic.
 constexpr double kLoosestRigid = 120, kLoosestRigidOfParts = 30;
 
-// About how many bits the residuals of a plane cost.
+// References are tried when their motion costs at most so much of what it costs from the structure's.
+constexpr double kWorthTrying = 1.3;
+constexpr double kExplicitBits = 30;
+
+// About how many bits a residual costs, and those of a plane.
+double EstimatedBits(std::int32_t residual) {
+  return residual == 0 ? 0 : 4 + 2 * std::bit_width(static_cast<std::uint32_t>(std::abs(residual)));
+}
 double EstimatedBits(const PlaneValues& residual) {
   double bits = 0;
-  for (const std::int32_t v : residual) bits += 2 * std::bit_width(static_cast<std::uint32_t>(std::abs(v)));
+  for (const std::int32_t v : residual) bits += EstimatedBits(v);
   return bits;
 }
 
@@ -225,25 +233,59 @@ void GroupEncoder::Quantize(Plane plane, const Eigen::MatrixXd& target, FrameCoe
   }
 }
 
+double GroupEncoder::ChooseMotion(const Rigid& rigid, const Eigen::MatrixXd& motion_target, const Predictor& predictor,
+                                  FrameSyntax& frame, FrameCoefficients& coefficients) const {
+  coefficients = predictor.Predict(frame.slot);
+  double bits = 0;
+  for (std::size_t i = 0; i < 6; ++i) bits += EstimatedBits(rigid[i] - coefficients.rigid[i]);
+  Quantize(kMotion, motion_target, coefficients, frame);
+  return bits + EstimatedBits(frame.planes[kMotion]);
+}
+
+PositionMatrix GroupEncoder::ChooseReferences(const PositionMatrix& aligned, const Rigid& rigid,
+                                              const Eigen::MatrixXd& motion_target, const Predictor& predictor,
+                                              FrameSyntax& frame, FrameCoefficients& coefficients) {
+  PositionMatrix left;
+  const auto displace = [&] {
+    left = aligned - reconstructor_.ReconstructMotion(coefficients.planes[kMotion]);
+    Quantize(kDisplacement, projection_.ProjectVertices(left), coefficients, frame);
+    left = aligned - reconstructor_.Add(kDisplacement, coefficients.planes[kDisplacement]);
+    return EstimatedBits(frame.planes[kDisplacement]);
+  };
+  const auto motion_bits = [&](const References& references) {
+    frame.slot.references = references;
+    return ChooseMotion(rigid, motion_target, predictor, frame, coefficients);
+  };
+  const auto whole_bits = [&](const References& references) {
+    const double bits = motion_bits(references);
+    return bits + displace();
+  };
+  const References own = frame.slot.references;
+  if (!UsesKeyReference() || own.empty()) {
+    whole_bits(own);
+    return left;
+  }
+  const double most = kWorthTrying * motion_bits(own);
+  const std::vector<References> likely =
+      LikelyReferences(static_cast<std::uint32_t>(predictor.frames().size()), motion_bits, most);
+  References best = own;
+  double least = whole_bits(own);
+  for (const References& references : likely) {
+    const double bits = whole_bits(references) + kExplicitBits;
+    if (bits >= least) continue;
+    least = bits;
+    best = references;
+  }
+  if (frame.slot.references != best) whole_bits(best);
+  return left;
+}
+
 Status GroupEncoder::ChoosePlanes(const PositionMatrix& positions, const Rigid& rigid,
                                   const Eigen::MatrixXd& motion_target, const Predictor& predictor,
                                   FrameSyntax& frame) {
   const PositionMatrix aligned = reconstructor_.RemoveRigid(positions, rigid);
-  FrameCoefficients coefficients = predictor.Predict(frame.slot);
-  Quantize(kMotion, motion_target, coefficients, frame);
-  if (UsesKeyReference() && !frame.intra()) {  // a cut costs less from zero
-    FrameSyntax intra = frame;
-    intra.slot.references.clear();
-    FrameCoefficients from_zero = predictor.Predict(intra.slot);
-    Quantize(kMotion, motion_target, from_zero, intra);
-    if (EstimatedBits(intra.planes[kMotion]) < EstimatedBits(frame.planes[kMotion])) {
-      frame = std::move(intra);
-      coefficients = std::move(from_zero);
-    }
-  }
-  PositionMatrix left = aligned - reconstructor_.ReconstructMotion(coefficients.planes[kMotion]);
-  Quantize(kDisplacement, projection_.ProjectVertices(left), coefficients, frame);
-  left = aligned - reconstructor_.Add(kDisplacement, coefficients.planes[kDisplacement]);
+  FrameCoefficients coefficients;
+  PositionMatrix left = ChooseReferences(aligned, rigid, motion_target, predictor, frame, coefficients);
   if (header_.detail_step > 0) {
     Quantize(kDetail, projection_.ProjectPatches(left), coefficients, frame);
     left = aligned - reconstructor_.Add(kDetail, coefficients.planes[kDetail]);

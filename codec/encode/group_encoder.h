@@ -60,7 +60,16 @@ class GroupEncoder {
                    const Predictor& predictor, FrameSyntax& frame) const;
   // Quantizes what `target` is beyond the prediction in `coefficients`, and adds it there.
   void Quantize(Plane plane, const Eigen::MatrixXd& target, FrameCoefficients& coefficients, FrameSyntax& frame) const;
-  // Chooses the planes' residuals; drops the references where coding from zero is cheaper.
+  // From the references of `frame`: its motion plane, and about how many bits it costs with the rigid motion.
+  // `coefficients`: the prediction, with the motion plane that results.
+  double ChooseMotion(const Rigid& rigid, const Eigen::MatrixXd& motion_target, const Predictor& predictor,
+                      FrameSyntax& frame, FrameCoefficients& coefficients) const;
+  // Chooses references other than the structure's where they are cheaper, then motion and displacement. What these
+  // leave of `aligned`.
+  PositionMatrix ChooseReferences(const PositionMatrix& aligned, const Rigid& rigid,
+                                  const Eigen::MatrixXd& motion_target, const Predictor& predictor, FrameSyntax& frame,
+                                  FrameCoefficients& coefficients);
+  // Chooses references and the planes' residuals.
   Status ChoosePlanes(const PositionMatrix& positions, const Rigid& rigid, const Eigen::MatrixXd& motion_target,
                       const Predictor& predictor, FrameSyntax& frame);
   // Whether exact + error, rounded to floats, is within the bound.

@@ -1,0 +1,50 @@
+#include "codec/encode/reference_search.h"
+
+#include <algorithm>
+#include <cstddef>
+
+namespace sac {
+namespace {
+
+constexpr std::uint32_t kFarthest = 128;  // frames back in coding order
+constexpr std::size_t kPaired = 5, kKept = 2;
+
+struct Scored {
+  double bits;
+  References references;
+};
+
+void KeepBest(std::vector<Scored>& scored, std::size_t most) {
+  std::stable_sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) { return a.bits < b.bits; });
+  if (scored.size() > most) scored.resize(most);
+}
+
+}  // namespace
+
+std::vector<References> LikelyReferences(std::uint32_t coded,
+                                         const std::function<double(const References&)>& motion_bits, double most) {
+  const auto score = [&](References references) {
+    const double bits = motion_bits(references);
+    return Scored{bits, std::move(references)};
+  };
+  std::vector<Scored> singles, pairs;
+  for (std::uint32_t i = coded - std::min(coded, kFarthest); i < coded; ++i) singles.push_back(score({i}));
+  KeepBest(singles, kPaired);
+  for (const Scored& a : singles) {
+    for (const Scored& b : singles) {
+      if (a.references[0] < b.references[0]) pairs.push_back(score({a.references[0], b.references[0]}));
+    }
+  }
+  KeepBest(singles, kKept);
+  KeepBest(pairs, kKept);
+  std::vector<References> likely;
+  for (auto* scored : {&singles, &pairs}) {
+    for (Scored& s : *scored) {
+      if (s.bits <= most) likely.push_back(std::move(s.references));
+    }
+  }
+  if (motion_bits({}) <= most) likely.emplace_back();
+  return likely;
+}
+
+}  // namespace sac
