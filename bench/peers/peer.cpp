@@ -16,19 +16,25 @@
 namespace sac::bench {
 namespace {
 
-// encode MESH CLIP -o STREAM --order-map MAP --setting SETTING; decode STREAM -o CLIP --order-map MAP
+// encode MESH CLIP -o STREAM --order-map MAP --setting SETTING; decode STREAM -o CLIP --order-map MAP; and after either
+// --report FILE
 struct Arguments {
-  std::string mesh, clip, stream, map, setting;
+  std::string mesh, clip, stream, map, setting, report;
 };
 
-bool ParseArguments(const std::vector<std::string>& words, Arguments& a) {
+bool ParseArguments(std::vector<std::string> words, Arguments& a) {
+  std::string report;
+  if (words.size() > 2 && words[words.size() - 2] == "--report") {
+    report = words.back();
+    words.resize(words.size() - 2);
+  }
   if (words.size() == 9 && words[0] == "encode" && words[3] == "-o" && words[5] == "--order-map" &&
       words[7] == "--setting") {
-    a = {words[1], words[2], words[4], words[6], words[8]};
+    a = {words[1], words[2], words[4], words[6], words[8], report};
     return true;
   }
   if (words.size() == 6 && words[0] == "decode" && words[2] == "-o" && words[4] == "--order-map") {
-    a = {"", words[3], words[1], words[5], ""};
+    a = {"", words[3], words[1], words[5], "", report};
     return true;
   }
   return false;
@@ -110,9 +116,13 @@ Status Run(const std::vector<std::string>& words, const Peer& peer) {
   if (!ParseArguments(words, arguments)) {
     return Status::InvalidArgument(
         "usage: describe | encode MESH CLIP -o STREAM --order-map MAP --setting S | decode STREAM -o CLIP "
-        "--order-map MAP");
+        "--order-map MAP; --report FILE after either");
   }
-  return arguments.mesh.empty() ? Decode(arguments, peer) : Encode(arguments, peer);
+  if (!arguments.report.empty() && !peer.report) return Status::InvalidArgument("--report: there is nothing to report");
+  SAC_RETURN_IF_ERROR(arguments.mesh.empty() ? Decode(arguments, peer) : Encode(arguments, peer));
+  if (arguments.report.empty()) return Status::Ok();
+  const std::string report = peer.report() + "\n";
+  return WriteBytes(arguments.report, report.data(), report.size());
 }
 
 }  // namespace

@@ -34,9 +34,11 @@ struct Peer {
   std::function<Status(const PeerClip& clip, const std::string& setting, PeerStream& stream)> encode;
   std::function<Status(std::span<const std::uint8_t> bytes, PeerClip& clip)> decode;
   std::string missing = {};  // why it cannot be run; empty when it can
+  // What was measured of the work done, as JSON for --report; most peers have none.
+  std::function<std::string()> report = {};
 };
 
-// The body of main: describe, encode or decode.
+// The body of main: describe, encode or decode; after the latter two words may follow `--report FILE`.
 int RunPeer(int argc, char** argv, const Peer& peer);
 
 // A setting that is a number. False, and `value` left alone, when it is none.

@@ -6,17 +6,21 @@
 // A setting is BASES/BITS, and after it /no-polar (the nine entries of the gradients themselves) or /no-arithmetic
 // (all BITS of each coefficient). What the paper leaves open: least and greatest are each channel's over the clip,
 // found by a pass without quantization; each component's mean vertex is sent per frame as float32.
+//
+// --report writes CPU seconds by step ("range": the pass without quantization as a whole), and of an encoder the bytes
+// of each part of the stream, the number of harmonics that the components got, and how often each level appears, a
+// table a channel.
 #include <Eigen/Core>
 #include <algorithm>
-#include <array>
-#include <bit>
-#include <cmath>
+#include <nlohmann/json.hpp>
 #include <sstream>
 
 #include "bench/peers/connectivity.h"
-#include "bench/peers/count_coder.h"
+#include "bench/peers/float_coder.h"
 #include "bench/peers/peer.h"
+#include "bench/peers/quantized_levels.h"
 #include "bench/peers/spectral_frames.h"
+#include "bench/peers/step_clock.h"
 #include "codec/deformation.h"
 #include "codec/encode/triangle_fields.h"
 
@@ -25,7 +29,36 @@ namespace {
 
 using Eigen::MatrixXd;
 
-constexpr Eigen::Index kChannels = 9;
+constexpr Eigen::Index kChannels = Quantizer::kChannels;
+
+// What --report asks for.
+struct Report {
+  StepClock clock;
+  nlohmann::ordered_json json = nlohmann::ordered_json::object();
+
+  // What was written since the last call is this part of the stream.
+  void Part(const char* name, const ByteWriter& out) {
+    json["bytes"][name] = out.size() - written_;
+    written_ = out.size();
+  }
+  void Levels(const std::vector<std::uint32_t>& levels, std::size_t bases) {
+    std::vector<std::vector<std::uint32_t>> channels(kChannels);
+    for (std::size_t i = 0; i < levels.size(); ++i) channels[i / bases % channels.size()].push_back(levels[i]);
+    for (const std::vector<std::uint32_t>& channel : channels) {
+      const SymbolCounts table = CountSymbols(channel);
+      std::vector<std::uint64_t> counts;
+      for (std::size_t i = 0; i < table.symbols.size(); ++i) counts.push_back(table.before[i + 1] - table.before[i]);
+      json["levels"].push_back({{"level", table.symbols}, {"count", counts}});
+    }
+  }
+  std::string Text() {
+    for (const auto& [step, seconds] : clock.seconds()) json["seconds"][step] = seconds;
+    return json.dump();
+  }
+
+ private:
+  std::size_t written_ = 0;
+};
 
 struct Settings {
   std::uint32_t bases = 0, bits = 0;
@@ -58,11 +91,10 @@ PositionMatrix MatrixOf(const Positions& positions, const std::vector<std::uint3
   return out;
 }
 
-// Draco's connectivity with the vertices of each component in a run, and the first frame.
+// Draco's connectivity with the vertices of each component in a run.
 struct FirstFrame {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> order;  // of Draco's vertices
-  PositionMatrix positions;
 };
 
 FirstFrame SortByComponent(const Connectivity& connectivity) {
@@ -77,43 +109,9 @@ FirstFrame SortByComponent(const Connectivity& connectivity) {
   return first;
 }
 
-// Floats as they are, each by its difference to the vertex before as ordered integers: how many bits that has,
-// adaptively, and the bits.
-template <class Coder>
-void CodeFloats(Coder& coder, std::vector<Vec3f>& values) {
-  std::array<std::array<BitModel, 33>, 3> models;
-  std::array<std::uint32_t, 3> last{};
-  // Ascending integers for ascending floats, and back.
-  const auto fold = [](std::uint32_t x) { return x >> 31 != 0 ? ~x : x | 0x80000000u; };
-  const auto unfold = [](std::uint32_t x) { return x >> 31 != 0 ? x & 0x7fffffffu : ~x; };
-  for (Vec3f& value : values) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      const std::uint32_t difference = fold(std::bit_cast<std::uint32_t>(value[a])) - last[a];
-      std::uint32_t zigzag = difference << 1 ^ (difference >> 31 != 0 ? 0xffffffffu : 0);
-      int width = Coder::kDecodes ? 0 : std::bit_width(zigzag);
-      for (int i = 0; i < 32; ++i) {
-        bool more = i < width;
-        coder.Bit(models[a][static_cast<std::size_t>(i)], more);
-        if (!more) break;
-        if constexpr (Coder::kDecodes) width = i + 1;
-      }
-      std::uint32_t high = zigzag >> 16, low = zigzag & 0xffff;
-      if (width > 16) coder.Raw(high, width - 16);
-      coder.Raw(low, std::min(width, 16));
-      if constexpr (Coder::kDecodes) {
-        zigzag = (width > 16 ? high << 16 : 0) | low;
-        last[a] += zigzag >> 1 ^ ((zigzag & 1) != 0 ? 0xffffffffu : 0);
-        value[a] = std::bit_cast<float>(unfold(last[a]));
-      } else {
-        last[a] += difference;
-      }
-    }
-  }
-}
-
 // Both directions: the frame that these coefficients make of the one before.
 Status Reconstruct(const SpectralBasis& basis, const Settings& settings, const MatrixXd& coefficients,
-                   const PositionMatrix& centres, PositionMatrix& positions) {
+                   const PositionMatrix& centres, StepClock& clock, PositionMatrix& positions) {
   const MatrixXd fields = basis.Fields(coefficients);
   std::vector<Eigen::Matrix3d> gradients(basis.triangles().size());
   for (std::size_t j = 0; j < gradients.size(); ++j) {
@@ -121,36 +119,19 @@ Status Reconstruct(const SpectralBasis& basis, const Settings& settings, const M
     for (Eigen::Index c = 0; c < kChannels; ++c) f[c] = fields(static_cast<Eigen::Index>(j), c);
     gradients[j] = settings.polar ? DeformationGradient(f) : Eigen::Map<Eigen::Matrix3d>(f);
   }
+  clock.Lap("gradients_from_coefficients");
   PositionMatrix out;
   SAC_RETURN_IF_ERROR(SolveGradients(basis, positions, gradients, centres, out));
   if (!out.allFinite()) return Status::Unsupported("the reconstruction has diverged");
   positions = out;
+  clock.Lap("poisson");
   return Status::Ok();
 }
-
-// Coefficients between a least and a greatest value of their channel, on so many bits.
-struct Quantizer {
-  std::array<float, kChannels> low, high;
-  std::uint32_t bits;
-
-  double Step(Eigen::Index c) const {
-    const auto i = static_cast<std::size_t>(c);
-    return (static_cast<double>(high[i]) - static_cast<double>(low[i])) / ((1u << bits) - 1);
-  }
-  std::uint32_t Level(double value, Eigen::Index c) const {
-    const double step = Step(c), at = static_cast<double>(low[static_cast<std::size_t>(c)]);
-    const double most = (1u << bits) - 1;
-    return step > 0 ? static_cast<std::uint32_t>(std::lround(std::clamp((value - at) / step, 0.0, most))) : 0;
-  }
-  double Value(std::uint32_t level, Eigen::Index c) const {
-    return static_cast<double>(low[static_cast<std::size_t>(c)]) + Step(c) * level;
-  }
-};
 
 // Goes through the frames as the decoder will; `code` may change the coefficients.
 template <class Code>
 Status EncodeFrames(const SpectralBasis& basis, const Settings& settings, const std::vector<PositionMatrix>& frames,
-                    Code&& code) {
+                    StepClock& clock, Code&& code) {
   PositionMatrix decoded = frames[0];
   for (std::size_t f = 1; f < frames.size(); ++f) {
     TriangleFields fields(basis.triangles());  // turns from frame to frame are below pi: no branches to follow
@@ -161,45 +142,51 @@ Status EncodeFrames(const SpectralBasis& basis, const Settings& settings, const 
       const Eigen::Matrix3d gradient = DeformationGradient(channels);
       for (Eigen::Index c = 0; c < kChannels; ++c) measured(j, c) = gradient(c % 3, c / 3);
     }
+    clock.Lap("polar");
     MatrixXd coefficients = basis.Project(measured);
+    clock.Lap("projection");
     code(coefficients);
+    clock.Lap("quantization");
     const PositionMatrix centres = Centres(basis, frames[f]).cast<float>().cast<double>();
-    SAC_RETURN_IF_ERROR(Reconstruct(basis, settings, coefficients, centres, decoded));
+    SAC_RETURN_IF_ERROR(Reconstruct(basis, settings, coefficients, centres, clock, decoded));
   }
   return Status::Ok();
 }
 
-template <class Coder>
-void CodeLevels(Coder& coder, const Settings& settings, std::vector<std::uint32_t>& levels) {
-  SymbolCounts table;
-  if constexpr (!Coder::kDecodes) table = CountSymbols(levels);
-  if (settings.arithmetic) CodeCounts(coder, table);
-  for (std::uint32_t& level : levels) {
-    if (settings.arithmetic) {
-      CodeSymbol(coder, table, level);
-    } else {
-      coder.Raw(level, static_cast<int>(settings.bits));
-    }
-  }
+void WriteCode(RangeEncoder& coder, ByteWriter& out) {
+  const std::vector<std::uint8_t> bytes = coder.Finish();
+  out.Varint(static_cast<std::uint32_t>(bytes.size()));
+  out.Bytes(bytes);
 }
 
-Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stream) {
+RangeDecoder ReadCode(ByteReader& in) {
+  const std::uint32_t size = in.Varint();
+  return RangeDecoder(in.Bytes(size));
+}
+
+Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stream, Report& report) {
   Settings settings;
   if (!Parse(setting, settings))
     return Status::InvalidArgument(setting + ": not BASES/BITS[/no-polar][/no-arithmetic]");
   ByteWriter out;
+  StepClock& clock = report.clock;
+  clock.Lap("reading");
   Connectivity connectivity;
   SAC_RETURN_IF_ERROR(WriteConnectivity(clip, out, connectivity));
+  report.Part("connectivity", out);
   FirstFrame first = SortByComponent(connectivity);
   for (const std::uint32_t v : first.order) stream.order.push_back(connectivity.order[v]);
   std::vector<PositionMatrix> frames;
   for (const Positions& frame : clip.frames) frames.push_back(MatrixOf(frame, stream.order));
+  clock.Lap("connectivity");
   SpectralBasis basis;
   SAC_RETURN_IF_ERROR(basis.Build(first.triangles, frames[0], settings.bases));
+  clock.Lap("eigenvectors");
 
   Quantizer quantizer{{}, {}, settings.bits};
   bool any = false;
-  SAC_RETURN_IF_ERROR(EncodeFrames(basis, settings, frames, [&](const MatrixXd& coefficients) {
+  StepClock range_clock;
+  SAC_RETURN_IF_ERROR(EncodeFrames(basis, settings, frames, range_clock, [&](const MatrixXd& coefficients) {
     for (Eigen::Index c = 0; c < kChannels; ++c) {
       const auto i = static_cast<std::size_t>(c);
       const auto low = static_cast<float>(coefficients.col(c).minCoeff());
@@ -209,12 +196,13 @@ Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stre
     }
     any = true;
   }));
+  clock.Lap("range");
   std::vector<std::uint32_t> levels;
-  SAC_RETURN_IF_ERROR(EncodeFrames(basis, settings, frames, [&](MatrixXd& coefficients) {
+  SAC_RETURN_IF_ERROR(EncodeFrames(basis, settings, frames, clock, [&](MatrixXd& coefficients) {
     for (Eigen::Index c = 0; c < kChannels; ++c) {
       for (Eigen::Index k = 0; k < basis.bases(); ++k) {
-        levels.push_back(quantizer.Level(coefficients(k, c), c));
-        coefficients(k, c) = quantizer.Value(levels.back(), c);
+        levels.push_back(quantizer.Level(coefficients(k, c), static_cast<std::size_t>(c)));
+        coefficients(k, c) = quantizer.Value(levels.back(), static_cast<std::size_t>(c));
       }
     }
   }));
@@ -225,16 +213,33 @@ Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stre
   out.Varint(static_cast<std::uint32_t>(frames.size()));
   for (const float x : quantizer.low) out.F32(x);
   for (const float x : quantizer.high) out.F32(x);
+  report.Part("header", out);
   for (std::size_t f = 1; f < frames.size(); ++f) {
     const PositionMatrix centres = Centres(basis, frames[f]);
     for (const double x : centres.reshaped()) out.F32(static_cast<float>(x));
   }
-  RangeEncoder coder;
+  report.Part("centres", out);
+  clock.Lap("writing");
+  RangeEncoder positions, counts, coefficients;
   std::vector<Vec3f> lossless;
   for (const std::uint32_t v : stream.order) lossless.push_back(clip.frames[0][v]);
-  CodeFloats(coder, lossless);
-  CodeLevels(coder, settings, levels);
-  out.Bytes(coder.Finish());
+  CodeFloats(positions, lossless);
+  WriteCode(positions, out);
+  report.Part("first_frame", out);
+  clock.Lap("first_frame");
+  SymbolCounts table;
+  if (settings.arithmetic) {
+    table = CountSymbols(levels);
+    CodeCounts(counts, table);
+    WriteCode(counts, out);
+  }
+  report.Part("counts", out);
+  CodeLevels(coefficients, settings.arithmetic ? &table : nullptr, settings.bits, levels);
+  WriteCode(coefficients, out);
+  report.Part("coefficients", out);
+  clock.Lap("arithmetic_coding");
+  report.json["bases"] = basis.bases();
+  report.Levels(levels, static_cast<std::size_t>(basis.bases()));
   stream.bytes = out.bytes();
   return Status::Ok();
 }
@@ -249,13 +254,16 @@ Positions PositionsOf(const PositionMatrix& matrix) {
   return out;
 }
 
-Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
+Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip, Report& report) {
+  StepClock& clock = report.clock;
+  clock.Lap("reading");
   ByteReader in(bytes);
   Connectivity connectivity;
   SAC_RETURN_IF_ERROR(ReadConnectivity(in, connectivity));
   FirstFrame first = SortByComponent(connectivity);
   std::uint32_t components = 0;
   (void)LabelComponents(static_cast<std::uint32_t>(connectivity.vertices), first.triangles, components);
+  clock.Lap("connectivity");
   Settings settings;
   settings.bases = in.Varint();
   settings.bits = in.U8();
@@ -272,25 +280,39 @@ Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
     for (double& x : centres.back().reshaped()) x = static_cast<double>(in.F32());
   }
   if (!in.ok()) return Status::Corrupt("truncated stream");
-  RangeDecoder coder(in.Bytes(in.remaining()));
+  RangeDecoder first_frame = ReadCode(in);
   clip.frames.emplace_back(connectivity.vertices);
-  CodeFloats(coder, clip.frames[0]);
+  CodeFloats(first_frame, clip.frames[0]);
   std::vector<std::uint32_t> in_order(connectivity.vertices);
   for (std::uint32_t v = 0; v < in_order.size(); ++v) in_order[v] = v;
   PositionMatrix positions = MatrixOf(clip.frames[0], in_order);
+  clock.Lap("first_frame");
   SpectralBasis basis;
   SAC_RETURN_IF_ERROR(basis.Build(first.triangles, positions, settings.bases));
+  clock.Lap("eigenvectors");
+  SymbolCounts table;
+  if (settings.arithmetic) {
+    RangeDecoder counts = ReadCode(in);
+    CodeCounts(counts, table);
+    if (!counts.ok()) return Status::Corrupt("truncated counts");
+  }
+  RangeDecoder coefficient_code = ReadCode(in);
   std::vector<std::uint32_t> levels(static_cast<std::size_t>(basis.bases() * kChannels) * centres.size());
-  CodeLevels(coder, settings, levels);
-  if (!coder.ok()) return Status::Corrupt("truncated stream");
+  CodeLevels(coefficient_code, settings.arithmetic ? &table : nullptr, settings.bits, levels);
+  if (!in.ok() || !first_frame.ok() || !coefficient_code.ok()) return Status::Corrupt("truncated stream");
+  clock.Lap("arithmetic_decoding");
   std::size_t next = 0;
   for (const PositionMatrix& centre : centres) {
     MatrixXd coefficients(basis.bases(), kChannels);
     for (Eigen::Index c = 0; c < kChannels; ++c) {
-      for (Eigen::Index k = 0; k < basis.bases(); ++k) coefficients(k, c) = quantizer.Value(levels[next++], c);
+      for (Eigen::Index k = 0; k < basis.bases(); ++k) {
+        coefficients(k, c) = quantizer.Value(levels[next++], static_cast<std::size_t>(c));
+      }
     }
-    SAC_RETURN_IF_ERROR(Reconstruct(basis, settings, coefficients, centre, positions));
+    clock.Lap("dequantization");
+    SAC_RETURN_IF_ERROR(Reconstruct(basis, settings, coefficients, centre, clock, positions));
     clip.frames.push_back(PositionsOf(positions));
+    clock.Lap("writing");
   }
   clip.triangles = first.triangles;
   return Status::Ok();
@@ -300,11 +322,17 @@ Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
 }  // namespace sac::bench
 
 int main(int argc, char** argv) {
-  return sac::bench::RunPeer(argc, argv,
-                             {"SAC as published (Wang et al. 2015)",
-                              "re-implemented",
-                              "bases/bits",
-                              {"25/18", "50/18", "100/18", "200/18", "400/18"},
-                              sac::bench::Encode,
-                              sac::bench::Decode});
+  using namespace sac::bench;
+  Report report;
+  return RunPeer(argc, argv,
+                 {"SAC as published (Wang et al. 2015)",
+                  "re-implemented",
+                  "bases/bits",
+                  {"25/18", "50/18", "100/18", "200/18", "400/18"},
+                  [&](const PeerClip& clip, const std::string& setting, PeerStream& stream) {
+                    return Encode(clip, setting, stream, report);
+                  },
+                  [&](std::span<const std::uint8_t> bytes, PeerClip& clip) { return Decode(bytes, clip, report); },
+                  "",
+                  [&] { return report.Text(); }});
 }

@@ -97,6 +97,44 @@ TEST_F(PeersTest, PublishedSacAndItsSwitches) {
   EXPECT_EQ(wrong.code, 1);
 }
 
+TEST_F(PeersTest, PublishedSacReportsItsStepsAndParts) {
+  Good({"synth", "sphere", "-o", "in.pc2", "--vertices", "162", "--frames", "9"});
+  const std::string peer = Quote(SAC_PEER_DIRECTORY "/sac-peer-sac2015");
+  std::map<std::string, nlohmann::json> reports;
+  for (const std::string setting : {"20/11", "20/11/no-arithmetic"}) {
+    const Outcome outcome =
+        Shell(peer + " encode in.obj in.pc2 -o a.bin --order-map m --setting " + setting + " --report encode.json && " +
+              peer + " decode a.bin -o a.pc2 --order-map m --report decode.json");
+    ASSERT_EQ(outcome.code, 0) << outcome.err;
+    const nlohmann::json report = reports[setting] = nlohmann::json::parse(Read("encode.json"), nullptr, false);
+    std::size_t bytes = 0, levels = 0;
+    for (const auto& [part, size] : report["bytes"].items()) bytes += size.get<std::size_t>();
+    EXPECT_EQ(bytes, Read("a.bin").size()) << setting;
+    ASSERT_EQ(report["levels"].size(), 9u);
+    for (const nlohmann::json& channel : report["levels"]) {
+      for (const std::size_t count : channel["count"]) levels += count;
+      EXPECT_LT(channel["level"].back(), 1 << 11);
+    }
+    EXPECT_EQ(levels, 8u * 20 * 9) << "frames, harmonics, channels";
+    const nlohmann::json decoded = nlohmann::json::parse(Read("decode.json"), nullptr, false);
+    for (const char* step : {"eigenvectors", "range", "polar", "projection", "quantization", "arithmetic_coding"})
+      EXPECT_TRUE(report["seconds"][step].is_number()) << step;
+    for (const char* step : {"eigenvectors", "arithmetic_decoding", "gradients_from_coefficients", "poisson"})
+      EXPECT_TRUE(decoded["seconds"][step].is_number()) << step;
+  }
+  const nlohmann::json &coded = reports["20/11"]["bytes"], &raw = reports["20/11/no-arithmetic"]["bytes"];
+  for (const char* part : {"connectivity", "header", "centres", "first_frame"}) EXPECT_EQ(coded[part], raw[part]);
+  EXPECT_EQ(coded["centres"], 8 * 3 * 4);
+  EXPECT_GT(coded["counts"], 0);
+  EXPECT_EQ(raw["counts"], 0);
+  EXPECT_NEAR(raw["coefficients"].get<double>(), 8 * 20 * 9 * 11 / 8.0, 4);
+
+  const Outcome other = Shell(Quote(SAC_PEER_DIRECTORY "/sac-peer-pca") +
+                              " encode in.obj in.pc2 -o b.bin --order-map m --setting 4 --report r.json");
+  EXPECT_EQ(other.code, 1) << "other peers have nothing to report";
+  EXPECT_NE(other.err.find("--report"), std::string::npos) << other.err;
+}
+
 // Two tetrahedra that meet in an edge (four triangles around it) and in a vertex with a third; a vertex of no triangle.
 TEST_F(PeersTest, OddMeshesComeBackOrAreRefused) {
   const std::string mesh =
