@@ -46,6 +46,9 @@ def main():
     )
     args = p.parse_args()
     peers = args.peers or os.path.join(os.path.dirname(args.sac), "../bench/peers")
+    for program in (args.sac, os.path.join(peers, "sac-peer-sac2015"), os.path.join(peers, "sac-peer-pca")):
+        if not os.access(program, os.X_OK):
+            p.error(f"{program} is not there, or no program")
     lab = Laboratory(args.data, args.sac, peers, args.work)
     os.makedirs(args.output, exist_ok=True)
     pages = []

@@ -15,6 +15,8 @@ def bytes_beside(lab, page):
         for bits in (FEWER, CLAIMED):  # one stream that is no worse than any of these points
             least = [min(rows[name][b][e] for b in bits) for e in ("kg", "sted")]
             ours[name, bits] = lab.sac(clip, "--target-kg", repr(least[0]), "--target-sted", repr(least[1]))
+    if not rows:
+        return
     beside = lambda n, b: ours[n, CLAIMED if b in CLAIMED else FEWER]
     after = lambda r: r["bytes"] - r["said"]["i_frame"]
     points = [(n, b) for n in rows for b in BITS]

@@ -32,6 +32,8 @@ def at(lab, setting):
 
 def table_1(lab, page):
     results = at(lab, "100/18")
+    if not results:
+        return
     seconds = {name: (r["encode"]["seconds"], r["decode"]["seconds"]) for name, r in results.items()}
     eigen_first = [
         n for n, (e, _) in seconds.items() if e["eigenvectors"] >= max(e[s] for s in ENCODING if s != "range")
@@ -116,6 +118,8 @@ coefficients, in the encoder too, which follows the decoder."""
 
 def figure_3(lab, page):
     fine, coarse = at(lab, "100/18"), at(lab, "100/12")
+    if not fine or not coarse:
+        return
     spent = (
         lambda r: 8
         * (r["encode"]["bytes"]["counts"] + r["encode"]["bytes"]["coefficients"])
@@ -206,6 +210,8 @@ def figure_6(lab, page):
             tried = {q: lab.sac(clip, "--quality", q) for q in ("0", "25", "50", "60", "70")}
             ours[name] = list(good(tried).values())
             refused += [f"{name} at {q} ({r['error']})" for q, r in tried.items() if "error" in r]
+    if not by_model:
+        return
     falls = {
         e: [n for n, rows in by_model.items() if not decreasing([rows[b][e] for b in sorted(rows)])]
         for e in ("kg", "sted", "max_error")
