@@ -119,6 +119,27 @@ TEST(Encoder, GoesOnAfterAFrameThatCannotBe) {
   EXPECT_TRUE(encoder->TakeBytes().empty());
 }
 
+TEST(Encoder, KeepsToTheLimitsOfDecoders) {
+  const Clip clip = BendingClip(3);
+  EncoderSettings settings;
+  settings.quality = 50;
+  std::unique_ptr<Encoder> encoder;
+  ASSERT_TRUE(Encoder::Create(clip.mesh, settings, encoder).ok());
+  const std::uint32_t usual = encoder->header().harmonics;
+  settings.limits.free_work = 2e6;  // too little for so many
+  settings.limits.work_per_byte = 0;
+  ASSERT_TRUE(Encoder::Create(clip.mesh, settings, encoder).ok());
+  EXPECT_LT(encoder->header().harmonics, usual);
+  DecoderSettings decoder;
+  decoder.limits = settings.limits;
+  EXPECT_TRUE(Decode(Encode(clip, settings).bytes, 1000, decoder).status.ok());
+  settings.harmonics = usual;
+  EXPECT_EQ(Encoder::Create(clip.mesh, settings, encoder).code(), StatusCode::kLimit);
+  settings.harmonics.reset();
+  settings.limits.vertices = 10;
+  EXPECT_EQ(Encoder::Create(clip.mesh, settings, encoder).code(), StatusCode::kLimit);
+}
+
 TEST(Encoder, IsFinishedOnce) {
   const Clip clip = BendingClip(1);
   std::unique_ptr<Encoder> encoder;

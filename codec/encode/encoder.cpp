@@ -30,8 +30,8 @@ Status CheckSettings(const EncoderSettings& s) {
   if (!(s.quality >= 0 && s.quality <= 100)) return Status::InvalidArgument("quality must be from 0 to 100");
   if (s.harmonics && *s.harmonics == 0) return Status::InvalidArgument("at least one harmonic is needed");
   if (s.samples_per_harmonic > 64) return Status::InvalidArgument("a reduced basis has at most 64 samples a harmonic");
-  if (s.group == 0 || s.group > Limits{}.frames_per_group) {
-    return Status::InvalidArgument("a group holds from 1 to " + std::to_string(Limits{}.frames_per_group) + " frames");
+  if (s.group == 0 || s.group > s.limits.frames_per_group) {
+    return Status::InvalidArgument("a group holds from 1 to " + std::to_string(s.limits.frames_per_group) + " frames");
   }
   if (s.pyramid == 0) return Status::InvalidArgument("a pyramid holds at least one frame");
   if (!(s.level_growth >= 1 && s.level_growth <= 2)) {
@@ -50,9 +50,8 @@ Status CheckSettings(const EncoderSettings& s) {
   return Status::Ok();
 }
 
-Status CheckMesh(const Mesh& mesh) {
+Status CheckMesh(const Mesh& mesh, const Limits& limits) {
   const std::size_t n = mesh.positions.size();
-  const Limits limits;
   if (n == 0) return Status::InvalidArgument("the mesh has no vertices");
   if (n > limits.vertices || mesh.triangles.size() > limits.triangles) {
     return Status::Limit("the mesh has more than " + std::to_string(limits.vertices) + " vertices or " +
@@ -133,7 +132,8 @@ std::vector<std::uint32_t> ShareHarmonics(const DecodedMesh& mesh, std::uint32_t
 
 class Encoder::Impl {
  public:
-  Status Start(const Mesh& first, const EncoderSettings& settings);
+  // kLimit when decoders refuse what is derived from the I-frame. `share`: of the harmonics that quality stands for.
+  Status Start(const Mesh& first, const EncoderSettings& settings, double share);
   Status Send(std::span<const Vec3f> positions);
   Status Finish();
 
@@ -160,9 +160,9 @@ class Encoder::Impl {
   Status failure_;  // half a frame has been coded
 };
 
-Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) {
+Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings, double share) {
   SAC_RETURN_IF_ERROR(CheckSettings(settings));
-  SAC_RETURN_IF_ERROR(CheckMesh(first));
+  SAC_RETURN_IF_ERROR(CheckMesh(first, settings.limits));
   SAC_RETURN_IF_ERROR(CheckFinite(first.positions));
   settings_ = settings;
   const double rms = RmsRadius(first.positions);
@@ -202,23 +202,24 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings) 
   DecodedIFrame decoded;
   SAC_RETURN_IF_ERROR(EncodeIFrameMesh(first, targets, header, syntax, decoded, order));
   const std::vector<std::uint32_t> counts = ShareHarmonics(
-      decoded.mesh, settings.harmonics.value_or(static_cast<std::uint32_t>(std::lround(defaults.harmonics))));
+      decoded.mesh, settings.harmonics.value_or(static_cast<std::uint32_t>(std::lround(share * defaults.harmonics))));
   for (const std::uint32_t c : counts) header.harmonics += c;
   syntax.harmonics = counts;
   SequenceHeader parsed;
-  if (const Status status = ParseSequenceHeader(WriteSequenceHeader(header), Limits{}, parsed); !status.ok()) {
+  if (const Status status = ParseSequenceHeader(WriteSequenceHeader(header), settings.limits, parsed); !status.ok()) {
     return Status::InvalidArgument(status.message());  // such as a step that no float can hold
   }
   syntax.samples_per_harmonic = settings.samples_per_harmonic;
   if (settings.keep_order) syntax.order = order;
-  SAC_RETURN_IF_ERROR(
-      BuildShape(header, std::move(decoded.mesh), counts, settings.samples_per_harmonic, Limits{}, shape_));
+  Limits limits = settings.limits;
+  limits.basis_work = AllowedWork(limits, WriteIFrame(syntax, header).size());
+  if (Status status =
+          BuildShape(header, std::move(decoded.mesh), counts, settings.samples_per_harmonic, limits, shape_);
+      !status.ok()) {
+    return status.code() == StatusCode::kLimit ? Status::Limit(status.message() + " of decoders") : status;
+  }
   syntax.fingerprint = shape_.basis.Fingerprint();
   const std::vector<std::uint8_t> i_frame = WriteIFrame(syntax, header);
-  if (shape_.work > AllowedWork(Limits{}, i_frame.size())) {
-    return Status::Limit("so many harmonics take more work than decoders allow an I-frame of " +
-                         std::to_string(i_frame.size()) + " bytes");
-  }
   encoder_ = std::make_unique<GroupEncoder>(shape_, header, settings.max_error.value_or(0));
 
   writer.emplace(settings.index, settings.repeat_start);
@@ -248,7 +249,7 @@ Status Encoder::Impl::Send(std::span<const Vec3f> positions) {
 // A group is no longer than any decoder takes by default.
 bool Encoder::Impl::IsFull(std::uint32_t frames) const {
   return frames == settings_.group ||
-         (std::uint64_t{frames} + 1) * FrameValues(shape_.layouts) > MostGroupValues(Limits{}, shape_);
+         (std::uint64_t{frames} + 1) * FrameValues(shape_.layouts) > MostGroupValues(settings_.limits, shape_);
 }
 
 Status Encoder::Impl::SendNow(PositionMatrix positions) {
@@ -307,10 +308,14 @@ Encoder::Encoder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Encoder::~Encoder() = default;
 
 Status Encoder::Create(const Mesh& first_frame, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder) {
-  auto impl = std::make_unique<Impl>();
-  SAC_RETURN_IF_ERROR(impl->Start(first_frame, settings));
-  encoder.reset(new Encoder(std::move(impl)));
-  return Status::Ok();
+  // A small I-frame of a large mesh may not ask for as many harmonics as its quality would.
+  constexpr double kFewer = 0.9, kFewest = 0.1;
+  for (double share = 1;; share *= kFewer) {
+    auto impl = std::make_unique<Impl>();
+    const Status status = impl->Start(first_frame, settings, share);
+    if (status.ok()) encoder.reset(new Encoder(std::move(impl)));
+    if (status.code() != StatusCode::kLimit || settings.harmonics || share < kFewest) return status;
+  }
 }
 
 Status Encoder::Send(std::span<const Vec3f> positions) { return impl_->Send(positions); }

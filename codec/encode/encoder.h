@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "codec/mesh.h"
+#include "format/limits.h"
 #include "format/plane_layout.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
@@ -36,6 +37,9 @@ struct EncoderSettings {
   bool index = true;        // end streams of several groups with where they begin
   // Header and I-frame come again before every so many groups, for those who join in the middle; 0: never.
   std::uint32_t repeat_start = 0;
+  // What the decoders it is for are ready to spend. A quality gets fewer harmonics when these would be too many;
+  // what exceeds them otherwise is refused, kLimit.
+  Limits limits;
 };
 
 // Bytes by what they say; they add up to the stream.

@@ -26,9 +26,8 @@ constexpr std::array<Typical, 10> kTypical = {{{0, 4.8, 0.22, 0.06},
 
 }  // namespace
 
-OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t fixed_harmonics,
-                       std::uint32_t vertices) {
-  const double most = fixed_harmonics > 0 ? fixed_harmonics : MostHarmonics(vertices);
+OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t fixed_harmonics, double most_harmonics) {
+  const double most = fixed_harmonics > 0 ? fixed_harmonics : most_harmonics;
   QualitySettings s;
   if (branch.detail) {
     // Only rows of few harmonics, so that detail sets in early enough.

@@ -24,8 +24,8 @@ struct Branch {
 };
 inline constexpr Branch kSmooth{false, -40, 95}, kDetailed{true, 60.6, 125};
 
-// The harmonics are `fixed_harmonics` unless these are 0.
-OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t fixed_harmonics, std::uint32_t vertices);
+// The harmonics are `fixed_harmonics` unless these are 0, and else no more than `most_harmonics`.
+OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t fixed_harmonics, double most_harmonics);
 
 // `base` with what the point says. With `fixed_harmonics` they stay as they are in `base`.
 EncoderSettings SettingsOf(const OperatingPoint& point, double quality, const EncoderSettings& base);

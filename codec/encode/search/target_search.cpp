@@ -26,6 +26,9 @@ constexpr int kMostTrials = 12;    // in a branch
 // How near to where detail becomes cheaper a smooth place is for both to be tried.
 constexpr double kSmoothWins = 62, kDetailWins = 84;
 
+// When decoders refuse as many harmonics.
+constexpr double kFewer = 0.9, kFewestHarmonics = 20;
+
 double LogRatio(double figure, double target) { return std::log(std::max(figure, 1e-12) / target); }
 
 class Search {
@@ -34,7 +37,7 @@ class Search {
          const std::function<Status(Trial&)>& run)
       : targets_(targets),
         base_(base),
-        vertices_(vertices),
+        most_harmonics_(MostHarmonics(vertices)),
         run_(run),
         free_{targets.kg && targets.sted, true, !base.harmonics, targets.kg && targets.sted ? 1.0 : 0.6} {}
 
@@ -60,7 +63,7 @@ class Search {
   Status SearchBranch(const Branch& branch, double quality);
   Status Evaluate(const Place& place, const Branch& branch);
   OperatingPoint Point(const Place& place, const Branch& branch) const {
-    return PointOf(place, branch, base_.harmonics.value_or(0), vertices_);
+    return PointOf(place, branch, base_.harmonics.value_or(0), most_harmonics_);
   }
   // The best trial of a branch that is not beyond a target.
   const Tried* Best(bool detail) const;
@@ -69,7 +72,7 @@ class Search {
 
   const RateTargets& targets_;
   const EncoderSettings& base_;
-  const std::uint32_t vertices_;
+  double most_harmonics_;  // that pay, and that decoders allow
   const std::function<Status(Trial&)>& run_;
   const FreePlace free_;
   std::deque<Tried> tried_;
@@ -97,7 +100,14 @@ Status Search::Evaluate(const Place& place, const Branch& branch) {
   Trial trial;
   trial.point = Point(place, branch);
   trial.settings = SettingsOf(trial.point, place.quality, base_);
-  SAC_RETURN_IF_ERROR(run_(trial));
+  Status status = run_(trial);
+  while (status.code() == StatusCode::kLimit && !base_.harmonics && trial.point.harmonics > kFewestHarmonics) {
+    most_harmonics_ = kFewer * trial.point.harmonics;
+    trial.point = Point(place, branch);
+    trial.settings = SettingsOf(trial.point, place.quality, base_);
+    status = run_(trial);
+  }
+  SAC_RETURN_IF_ERROR(status);
   bytes_of_bpvf_ = static_cast<double>(trial.bytes) / trial.bpvf;
   tried_.push_back({place, branch.detail, trial});
   return Status::Ok();
