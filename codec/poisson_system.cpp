@@ -27,8 +27,9 @@ const PositionMatrix& PoissonSystem::Solve(const DeformationGradients& gradients
     right_side_.row(a) += pull;
     right_side_.row(b) -= pull;
   }
-  solver_.SolveInPlace(right_side_);
-  solution_ = right_side_;
+  columns_ = right_side_;
+  solver_.SolveInPlace(columns_);
+  solution_ = columns_;
   for (const Component& c : shape_.components) {
     const auto mass = shape_.masses.segment(c.first, c.count);
     auto x = solution_.middleRows(c.first, c.count);

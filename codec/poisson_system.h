@@ -32,7 +32,8 @@ class PoissonSystem {
   Eigen::SparseMatrix<double> matrix_;
   SparseCholesky solver_;
   bool analyzed_ = false;
-  RowMatrix right_side_;
+  PositionMatrix right_side_;
+  RowMatrix columns_;
   PositionMatrix solution_;
 };
 
