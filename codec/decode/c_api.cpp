@@ -49,6 +49,24 @@ sac_status Run(sac_decoder* decoder, Step&& step) {
   }
 }
 
+// Calls visit(member, limit) for each limit of the settings and its twin among `limits`.
+template <class Settings, class Limits, class Visit>
+void VisitLimits(Settings& settings, Limits& limits, Visit&& visit) {
+  visit(settings.max_vertices, limits.vertices);
+  visit(settings.max_triangles, limits.triangles);
+  visit(settings.max_harmonics, limits.harmonics);
+  visit(settings.max_frames_per_group, limits.frames_per_group);
+  visit(settings.max_packet_bytes, limits.packet_bytes);
+  visit(settings.max_group_values, limits.group_values);
+  visit(settings.max_basis_values, limits.basis_values);
+  visit(settings.max_factor_values, limits.factor_values);
+  visit(settings.max_memory, limits.memory);
+  visit(settings.max_basis_work, limits.basis_work);
+  visit(settings.max_free_work, limits.free_work);
+  visit(settings.max_work_per_byte, limits.work_per_byte);
+  visit(settings.max_frame_work, limits.frame_work);
+}
+
 sac::VertexBuffer ToBuffer(const sac_vertex_buffer& b) {
   return {b.data, b.size, b.stride, b.format == SAC_INT16 ? sac::VertexFormat::kInt16 : sac::VertexFormat::kFloat32};
 }
@@ -89,22 +107,9 @@ const char* sac_stream_version(void) {
 
 void sac_settings_init(sac_settings* settings) {
   const sac::DecoderSettings defaults;
-  const sac::Limits& limits = defaults.limits;
   *settings = {};
   settings->struct_size = sizeof(sac_settings);
-  settings->max_vertices = limits.vertices;
-  settings->max_triangles = limits.triangles;
-  settings->max_harmonics = limits.harmonics;
-  settings->max_frames_per_group = limits.frames_per_group;
-  settings->max_packet_bytes = limits.packet_bytes;
-  settings->max_group_values = limits.group_values;
-  settings->max_basis_values = limits.basis_values;
-  settings->max_factor_values = limits.factor_values;
-  settings->max_memory = limits.memory;
-  settings->max_basis_work = limits.basis_work;
-  settings->max_free_work = limits.free_work;
-  settings->max_work_per_byte = limits.work_per_byte;
-  settings->max_frame_work = limits.frame_work;
+  VisitLimits(*settings, defaults.limits, [](auto& member, const auto& limit) { member = limit; });
   settings->skip_damage = defaults.skip_damage ? 1 : 0;
   settings->frame_step = defaults.frame_step;
   settings->threads = defaults.threads;
@@ -119,19 +124,7 @@ sac_decoder* sac_decoder_open(const sac_settings* settings) {
   }
   if (s.frame_step == 0 || s.threads > 1024) return nullptr;
   sac::DecoderSettings to;
-  to.limits.vertices = s.max_vertices;
-  to.limits.triangles = s.max_triangles;
-  to.limits.harmonics = s.max_harmonics;
-  to.limits.frames_per_group = s.max_frames_per_group;
-  to.limits.packet_bytes = s.max_packet_bytes;
-  to.limits.group_values = s.max_group_values;
-  to.limits.basis_values = s.max_basis_values;
-  to.limits.factor_values = s.max_factor_values;
-  to.limits.memory = s.max_memory;
-  to.limits.basis_work = s.max_basis_work;
-  to.limits.free_work = s.max_free_work;
-  to.limits.work_per_byte = s.max_work_per_byte;
-  to.limits.frame_work = s.max_frame_work;
+  VisitLimits(s, to.limits, [](const auto& member, auto& limit) { limit = member; });
   to.skip_damage = s.skip_damage != 0;
   to.frame_step = s.frame_step;
   to.threads = s.threads;
