@@ -217,22 +217,39 @@ bool SameFingerprint(const std::array<float, 2>& a, const std::array<float, 2>& 
   return std::abs(a[0] - b[0]) <= 1e-5f * std::abs(a[0]) + 1e-6f && std::abs(a[1] - b[1]) <= 1e-5f;
 }
 
+namespace {
+
+// The eigenproblem that ComputeComponent solves for a component.
+struct Eigenproblem {
+  Eigenproblem(double vertices, double harmonics, double samples)
+      : reduced(samples > 0 && samples < vertices),
+        size(reduced ? samples : vertices),
+        basis(std::min(2 * harmonics + kSpareVectors, size)),
+        dense(size <= kDenseSize || basis == size) {}
+  bool reduced;
+  double size;
+  double basis;  // vectors of Lanczos
+  bool dense;    // all eigenpairs at once
+};
+
+}  // namespace
+
 double HarmonicsWork(double vertices, double harmonics, double samples) {
   if (harmonics == 1) return vertices;
-  const bool reduced = samples > 0 && samples < vertices;
-  const double n = reduced ? samples : vertices, basis = 2 * harmonics + kSpareVectors;
-  const double products = reduced ? 10 * vertices * (harmonics * harmonics + samples) : 0;
-  if (n <= kDenseSize || basis >= n) return products + 10 * n * n * n;
-  return products + kUsualRestarts * basis * n * (reduced ? basis + n : basis);
+  const Eigenproblem problem(vertices, harmonics, samples);
+  const double n = problem.size, basis = problem.basis;
+  const double products = problem.reduced ? 10 * vertices * (harmonics * harmonics + samples) : 0;
+  if (problem.dense) return products + 10 * n * n * n;
+  return products + kUsualRestarts * basis * n * (problem.reduced ? basis + n : basis);
 }
 
 double HarmonicsMemory(double vertices, double harmonics, double samples) {
   constexpr double kValue = sizeof(double), kFunctions = 1000;  // a vertex, of the radial functions around it
   if (harmonics == 1) return kValue * vertices;
-  const bool reduced = samples > 0 && samples < vertices;
-  const double n = reduced ? samples : vertices, basis = std::min(2 * harmonics + kSpareVectors, n);
-  const double kept = kValue * vertices * harmonics, problem = kValue * (n <= kDenseSize ? 4 * n * n : n * basis);
-  return reduced ? 4 * kept + kFunctions * vertices + problem + 6 * kValue * n * n : 2 * kept + problem;
+  const Eigenproblem problem(vertices, harmonics, samples);
+  const double n = problem.size, kept = kValue * vertices * harmonics;
+  const double vectors = kValue * (n <= kDenseSize ? 4 * n * n : n * problem.basis);
+  return problem.reduced ? 4 * kept + kFunctions * vertices + vectors + 6 * kValue * n * n : 2 * kept + vectors;
 }
 
 Status ComputeHarmonics(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,

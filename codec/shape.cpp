@@ -67,8 +67,11 @@ Status CheckSystems(const SequenceHeader& header, const Limits& limits, Shape& s
 
 }  // namespace
 
-double AllowedWork(const Limits& limits, std::size_t i_frame_bytes) {
-  return std::min(limits.basis_work, limits.free_work + limits.work_per_byte * static_cast<double>(i_frame_bytes));
+Limits LimitsOfIFrame(const Limits& limits, std::size_t i_frame_bytes) {
+  Limits narrowed = limits;
+  narrowed.basis_work =
+      std::min(limits.basis_work, limits.free_work + limits.work_per_byte * static_cast<double>(i_frame_bytes));
+  return narrowed;
 }
 
 std::uint64_t MostGroupValues(const Limits& limits, const Shape& shape) {

@@ -43,8 +43,8 @@ struct Shape {
   std::size_t vertices() const { return static_cast<std::size_t>(positions.rows()); }
 };
 
-// What an I-frame packet of so many bytes may ask for (spec.md 9).
-double AllowedWork(const Limits& limits, std::size_t i_frame_bytes);
+// The limits for what an I-frame packet of so many bytes asks for (spec.md 9).
+Limits LimitsOfIFrame(const Limits& limits, std::size_t i_frame_bytes);
 
 // How many values of planes a group may have, with what the shape leaves of the memory.
 std::uint64_t MostGroupValues(const Limits& limits, const Shape& shape);

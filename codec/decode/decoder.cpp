@@ -217,10 +217,8 @@ Status Decoder::Impl::DecodeIFrame(std::span<const std::uint8_t> payload) {
   out.uv_triangles = std::move(decoded.uv_triangles);
   out.normals = std::move(decoded.normals);
   out.colors = std::move(decoded.colors);
-  Limits limits = settings.limits;
-  limits.basis_work = AllowedWork(limits, payload.size());
-  SAC_RETURN_IF_ERROR(
-      BuildShape(*header, std::move(decoded.mesh), syntax.harmonics, syntax.samples_per_harmonic, limits, shape_));
+  SAC_RETURN_IF_ERROR(BuildShape(*header, std::move(decoded.mesh), syntax.harmonics, syntax.samples_per_harmonic,
+                                 LimitsOfIFrame(settings.limits, payload.size()), shape_));
   if (!SameFingerprint(shape_.basis.Fingerprint(), syntax.fingerprint)) {
     return Status::Unsupported("the harmonics computed here are not the encoder's");
   }

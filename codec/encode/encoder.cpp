@@ -211,8 +211,7 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings, 
   }
   syntax.samples_per_harmonic = settings.samples_per_harmonic;
   if (settings.keep_order) syntax.order = order;
-  Limits limits = settings.limits;
-  limits.basis_work = AllowedWork(limits, WriteIFrame(syntax, header).size());
+  const Limits limits = LimitsOfIFrame(settings.limits, WriteIFrame(syntax, header).size());
   if (Status status =
           BuildShape(header, std::move(decoded.mesh), counts, settings.samples_per_harmonic, limits, shape_);
       !status.ok()) {
