@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-#include "tests/temporary_directory.h"
+#include "tests/test_directory.h"
 
 namespace sac {
 namespace {
@@ -28,7 +28,7 @@ class CacheFileTest : public testing::Test {
     return status.ok() ? "" : status.message().substr(directory_.Path("").size());
   }
 
-  TemporaryDirectory directory_;
+  TestDirectory directory_;
 };
 
 TEST_F(CacheFileTest, ReadsBothFormatsInAnyOrder) {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "cli/frame_pattern.h"
-#include "tests/temporary_directory.h"
+#include "tests/test_directory.h"
 
 namespace sac {
 namespace {
@@ -52,7 +52,7 @@ class ClipInputTest : public testing::Test {
     return ReadAll(arguments, xs);
   }
 
-  TemporaryDirectory directory_;
+  TestDirectory directory_;
 };
 
 TEST_F(ClipInputTest, CacheGivesPositionsAndMeshTheRest) {

@@ -8,7 +8,7 @@
 
 #include "cli/clip_input.h"
 #include "cli/mesh_file.h"
-#include "tests/temporary_directory.h"
+#include "tests/test_directory.h"
 
 namespace sac {
 namespace {
@@ -43,7 +43,7 @@ class ClipOutputTest : public testing::Test {
 
   static Positions Frame(float x) { return {{x, 0, 0}, {0, x, 0}, {0, 0, 1 / x}}; }
 
-  TemporaryDirectory directory_;
+  TestDirectory directory_;
   Mesh mesh_;
   std::unique_ptr<ClipOutput> output_;
 };
@@ -135,7 +135,7 @@ TEST_F(ClipOutputTest, AFullDiskIsOneErrorAndLeavesNothing) {
 }
 
 TEST(OutputFileTest, AppearsWithCommitAndKeepsTheMode) {
-  const TemporaryDirectory directory;
+  const TestDirectory directory;
   const std::string path = directory.Write("target", "old");
   chmod(path.c_str(), 0640);
   std::filesystem::create_symlink("target", directory.Path("link"));
@@ -158,7 +158,7 @@ TEST(OutputFileTest, AppearsWithCommitAndKeepsTheMode) {
 }
 
 TEST(OutputFileTest, MovedFilesKeepTheirTemporary) {
-  const TemporaryDirectory directory;
+  const TestDirectory directory;
   std::vector<OutputFile> files;
   for (int i = 0; i < 10; ++i) {
     OutputFile file;
@@ -200,7 +200,7 @@ TEST(OutputFileTest, StandardOutput) {
 }
 
 TEST(OutputFileTest, Errors) {
-  const TemporaryDirectory directory;
+  const TestDirectory directory;
   EXPECT_EQ(OutputFile().Open(directory.Path("")).message(), directory.Path("") + ": Is a directory");
   OutputFile closed;
   ASSERT_TRUE(closed.Open(directory.Path("a")).ok());

@@ -7,7 +7,7 @@
 #include <limits>
 #include <random>
 
-#include "tests/temporary_directory.h"
+#include "tests/test_directory.h"
 
 namespace sac {
 namespace {
@@ -44,7 +44,7 @@ class MeshFileTest : public testing::Test {
     return status.ok() ? "" : status.message().substr(directory_.Path("").size());
   }
 
-  TemporaryDirectory directory_;
+  TestDirectory directory_;
 };
 
 // A non-manifold edge (three triangles at 0-1), a degenerate and a duplicate triangle, a flipped one, an isolated

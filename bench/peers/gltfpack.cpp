@@ -1,8 +1,6 @@
 // glTF with a morph target a frame, by gltfpack with its strongest compression (EXT_meshopt_compression). gltfpack is a
 // program of the npm package of that name; `npm ci` in this directory installs the version that package.json names.
 // Which of its vertices is which, it does not say: a second run, on the first frame with numbers, tells.
-#include <stdlib.h>
-
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -13,6 +11,7 @@
 #include "bench/peers/gltf_file.h"
 #include "bench/peers/peer.h"
 #include "cli/sweep/child_process.h"
+#include "cli/temporary_directory.h"
 
 namespace sac::bench {
 namespace {
@@ -30,28 +29,10 @@ std::string FindGltfpack() {
   return "";
 }
 
-class TemporaryDirectory {
- public:
-  TemporaryDirectory() {
-    std::string name = (fs::temp_directory_path() / "sac-gltfpack-XXXXXX").string();
-    if (mkdtemp(name.data()) != nullptr) path_ = name;
-  }
-  ~TemporaryDirectory() {
-    std::error_code ignored;
-    if (!path_.empty()) fs::remove_all(path_, ignored);
-  }
-  TemporaryDirectory(const TemporaryDirectory&) = delete;
-  TemporaryDirectory& operator=(const TemporaryDirectory&) = delete;
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
 Status Run(const PeerClip& clip, bool ids, const std::vector<std::string>& options, std::vector<std::uint8_t>& bytes) {
-  const TemporaryDirectory directory;
+  const TemporaryDirectory directory("sac-gltfpack-");
   if (directory.path().empty()) return Status::IoError("no temporary directory");
-  const std::string path = directory.path() + "/clip", packed = directory.path() + "/packed.glb";
+  const std::string path = directory.Path("clip"), packed = directory.Path("packed.glb");
   SAC_RETURN_IF_ERROR(WriteGltf(clip, ids, path));
   // Keys stay as they are, so that frames come back at their times.
   std::vector<std::string> command{FindGltfpack(), "-i", path + ".gltf", "-o", packed, "-cc", "-af", "0"};

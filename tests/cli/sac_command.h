@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-#include "tests/temporary_directory.h"
+#include "tests/test_directory.h"
 
 namespace sac {
 
@@ -72,10 +72,10 @@ class SacCommand : public testing::Test {
   std::string Path(const std::string& name) const { return directory_.Path(name); }
   std::string Read(const std::string& name) const { return directory_.Read(name); }
 
-  TemporaryDirectory directory_;
+  TestDirectory directory_;
 
  private:
-  TemporaryDirectory streams_;
+  TestDirectory streams_;
 };
 
 // With a small clip: in.obj, in.pc2, 12 frames.
