@@ -19,8 +19,8 @@ namespace {
 constexpr double kInhomogeneity = 0.1;
 constexpr std::uint32_t kDenseSize = 96;  // up to here all eigenpairs at once are as quick as the wanted ones
 constexpr int kSpareVectors = 20;         // of Lanczos, beside two for each wanted one
-// Surfaces take 1 to 5 restarts; what is next to a long path, whose eigenvalues are all but equal, takes hundreds.
-constexpr int kUsualRestarts = 5, kMostRestarts = 300;
+// Surfaces take 1 or 2 restarts; what is next to a long path, whose eigenvalues are all but equal, takes hundreds.
+constexpr int kUsualRestarts = 5, kMostRestarts = 60;
 
 // A fixed generic cubic of the coordinates scaled to [0, 1], within [-1, 1] (spec.md 6.4.2).
 double GenericCubic(const Eigen::Array3d& p) {

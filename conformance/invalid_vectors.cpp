@@ -355,13 +355,14 @@ void AddSideInformation(Collection& c) {
       },
       "limit");
   c.Change("R45", "path", [](StreamParts& p) {  // a path, at one position: eigenvalues all but equal
-    p.header.vertices = 3000;
-    p.header.triangles = 2999;
+    constexpr std::uint32_t kVertices = 300;
+    p.header.vertices = kVertices;
+    p.header.triangles = kVertices - 1;
     p.header.harmonics = 2;
     p.header.detail_step = p.header.correction_step = 0;
-    p.i_frame.loose_vertices.assign(3000, p.i_frame.loose_vertices[0]);
+    p.i_frame.loose_vertices.assign(kVertices, p.i_frame.loose_vertices[0]);
     p.i_frame.loose_triangles.clear();
-    for (std::uint32_t v = 0; v + 1 < 3000; ++v) p.i_frame.loose_triangles.push_back({v, v + 1, v + 1});
+    for (std::uint32_t v = 0; v + 1 < kVertices; ++v) p.i_frame.loose_triangles.push_back({v, v + 1, v + 1});
     p.i_frame.harmonics = {2};
     p.groups.clear();
   });

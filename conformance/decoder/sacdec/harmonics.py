@@ -15,7 +15,8 @@ from .sequence_header import SequenceHeader
 from .shape import Edges, laplacian, uneven_weights
 from .vertices import Mesh
 
-MOST_DENSE = 1500  # vertices; more make a dense eigenproblem slow
+MOST_DENSE = 250  # vertices; more make a dense eigenproblem slow
+MOST_RESTARTS = 60  # of Lanczos; surfaces take a few
 
 
 @dataclass
@@ -57,7 +58,7 @@ def exact_basis(matrix: sp.csc_matrix, masses: np.ndarray, count: int) -> tuple[
         values, vectors = scipy.linalg.eigh(scaled.toarray(), subset_by_index=(0, count - 1))
     else:
         start = generic_numbers(np.arange(n))
-        values, vectors = sp.linalg.eigsh(scaled, count, sigma=-1.0, v0=start, maxiter=100 * count)
+        values, vectors = sp.linalg.eigsh(scaled, count, sigma=-1.0, v0=start, maxiter=MOST_RESTARTS)
         ascending = np.argsort(values)
         values, vectors = values[ascending], vectors[:, ascending]
     return values, root @ vectors
