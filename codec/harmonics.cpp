@@ -197,24 +197,31 @@ bool ComputeComponent(const EdgeList& edges, std::span<const double> weights, co
   return true;
 }
 
-}  // namespace
-
-std::array<float, 2> HarmonicBasis::Fingerprint() const {
-  double sum = 0, form = 0;
-  for (const ComponentHarmonics& c : components) {
-    sum += c.eigenvalues.sum();
-    for (Eigen::Index k = 0; k < c.vectors.cols(); ++k) {
+// The part of the generic bilinear form that these vectors have in it; constant functions have none.
+double GenericForm(const HarmonicBasis& basis) {
+  double form = 0;
+  for (const ComponentHarmonics& c : basis.components) {
+    for (Eigen::Index k = 1; k < c.vectors.cols(); ++k) {
       double column = 0;
       for (Eigen::Index v = 0; v < c.vectors.rows(); ++v)
         column += Generic(static_cast<std::uint32_t>(7 * v)) * c.vectors(v, k);
       form += Generic(static_cast<std::uint32_t>(3 * k)) * column / static_cast<double>(c.vectors.rows());
     }
   }
-  return {static_cast<float>(sum), static_cast<float>(form)};
+  return form;
+}
+
+}  // namespace
+
+std::array<float, 2> Fingerprint(const HarmonicBasis& components, const HarmonicBasis& patches) {
+  double sum = 0;
+  for (const ComponentHarmonics& c : components.components) sum += c.eigenvalues.sum();
+  return {static_cast<float>(sum), static_cast<float>(GenericForm(components) + GenericForm(patches))};
 }
 
 bool SameFingerprint(const std::array<float, 2>& a, const std::array<float, 2>& b) {
-  return std::abs(a[0] - b[0]) <= 1e-5f * std::abs(a[0]) + 1e-6f && std::abs(a[1] - b[1]) <= 1e-5f;
+  return std::abs(a[0] - b[0]) <= 1e-5f * std::abs(a[0]) + 1e-6f &&
+         std::abs(a[1] - b[1]) <= 1e-5f * std::abs(a[1]) + 1e-5f;
 }
 
 namespace {

@@ -24,13 +24,13 @@ struct ComponentHarmonics {
 struct HarmonicBasis {
   std::vector<ComponentHarmonics> components;
   std::vector<HarmonicIndex> order;  // of a plane's rows
-
-  // Two numbers that differ when the basis does: the sum of eigenvalues, and a fixed generic bilinear form of the
-  // vectors (spec.md 6.6).
-  std::array<float, 2> Fingerprint() const;
 };
 
-// Whether two fingerprints are of the same basis, as computed by different machines.
+// Two numbers that differ when the harmonics of components or patches do: the sum of the components' eigenvalues, and a
+// fixed generic bilinear form of all vectors (spec.md 6.6).
+std::array<float, 2> Fingerprint(const HarmonicBasis& components, const HarmonicBasis& patches);
+
+// Whether two fingerprints are of the same harmonics, as computed by different machines.
 bool SameFingerprint(const std::array<float, 2>& a, const std::array<float, 2>& b);
 
 // Multiplications that the harmonics of a component of so many vertices take, about. `samples`: of the reduced basis.

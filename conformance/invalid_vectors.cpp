@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <utility>
 
 #include "codec/decode/draco_mesh.h"
 #include "codec/encode/position_search.h"
@@ -200,7 +201,7 @@ void AddPackets(Collection& c) {
   c.ChangePackets("R24", "empty", [](Packets& p) { p[1].second.clear(); });
   c.ChangePackets("R30", "long", [](Packets& p) { p[1].second.insert(p[1].second.end(), {0, 0, 0, 0, 1}); });
   c.ChangePackets("R30", "zero", [](Packets& p) { p[1].second.push_back(0); });
-  c.ChangePackets("R30", "other_end", [](Packets& p) { ++p[1].second.back(); });
+  c.ChangePackets("R30", "other_end", [](Packets& p) { p[1].second.push_back(1); });
   c.ChangePackets("R30", "short", [](Packets& p) { p[1].second.resize(p[1].second.size() - 9); });
   c.ChangePackets("R47", "no_frames", [](Packets& p) { p[2].second = {0, 0, 1}; });
   c.ChangePackets("R47", "no_pyramid", [](Packets& p) { p[2].second = {1, 0, 0}; });
@@ -370,6 +371,14 @@ void AddSideInformation(Collection& c) {
       "R46", "eigenvalues", [](IFrameSyntax& s) { s.fingerprint[0] *= 1.001f; }, "unsupported");
   i_frame(
       "R46", "vectors", [](IFrameSyntax& s) { s.fingerprint[1] += 0.001f; }, "unsupported");
+  c.Change(
+      "R46", "patches",
+      [](StreamParts& p) {  // the fingerprint of the components alone
+        const float detail_step = std::exchange(p.header.detail_step, 0.0f);
+        Derive(p);
+        p.header.detail_step = detail_step;
+      },
+      "unsupported");
   i_frame(
       "R46", "nan", [](IFrameSyntax& s) { s.fingerprint[1] = std::nanf(""); }, "unsupported");
 }

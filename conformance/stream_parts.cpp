@@ -90,7 +90,7 @@ void Derive(StreamParts& parts) {
   Require(AssembleIFrame(parts.i_frame, parts.header, std::move(draco), decoded));
   Require(BuildShape(parts.header, std::move(decoded.mesh), parts.i_frame.harmonics, parts.i_frame.samples_per_harmonic,
                      Limits{}, shape));
-  parts.i_frame.fingerprint = shape.basis.Fingerprint();
+  parts.i_frame.fingerprint = Fingerprint(shape.basis, shape.patch_basis);
   parts.layouts = shape.layouts;
 }
 

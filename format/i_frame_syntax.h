@@ -39,7 +39,7 @@ struct IFrameSyntax {
   std::vector<std::array<std::uint32_t, 3>> loose_triangles;  // vertices of triangles that Draco drops
   std::vector<std::uint32_t> harmonics;                       // per component, each at least 1
   std::uint32_t samples_per_harmonic = 0;                     // 0: exact harmonics (spec.md 6.4)
-  std::array<float, 2> fingerprint = {};                      // of the basis (spec.md 6.6)
+  std::array<float, 2> fingerprint = {};                      // of the harmonics (spec.md 6.6)
   std::vector<std::uint32_t> order;  // per vertex its index in the input; empty when the input's order is not kept
 };
 

@@ -10,7 +10,7 @@
 namespace sac {
 
 inline constexpr std::uint8_t kVersionMajor = 0;
-inline constexpr std::uint8_t kVersionMinor = 6;
+inline constexpr std::uint8_t kVersionMinor = 7;
 
 // What a group's fields are measured against (spec.md 4).
 enum class ReferenceShape : std::uint8_t {

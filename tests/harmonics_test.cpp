@@ -182,13 +182,31 @@ TEST(Harmonics, OfMeshesWithoutExtentAreFinite) {
 }
 
 TEST(Fingerprint, TellsBasesApart) {
-  const auto sphere = Compute(SphereMesh(4), {20}).shape.basis.Fingerprint();
-  EXPECT_TRUE(SameFingerprint(sphere, Compute(SphereMesh(4), {20}).shape.basis.Fingerprint()));
-  EXPECT_FALSE(SameFingerprint(sphere, Compute(SphereMesh(4), {19}).shape.basis.Fingerprint()));
-  EXPECT_FALSE(SameFingerprint(sphere, Compute(SphereMesh(4), {20}, 3).shape.basis.Fingerprint()));
-  HarmonicBasis turned = Compute(SphereMesh(4), {20}).shape.basis;
-  turned.components[0].vectors.col(7) *= -1;
-  EXPECT_FALSE(SameFingerprint(sphere, turned.Fingerprint()));
+  const auto of = [](const Basis& basis) { return Fingerprint(basis.shape.basis, {}); };
+  const Basis sphere = Compute(SphereMesh(4), {20});
+  EXPECT_TRUE(SameFingerprint(of(sphere), of(Compute(SphereMesh(4), {20}))));
+  EXPECT_FALSE(SameFingerprint(of(sphere), of(Compute(SphereMesh(4), {19}))));
+  EXPECT_FALSE(SameFingerprint(of(sphere), of(Compute(SphereMesh(4), {20}, 3))));
+  Basis turned = sphere;
+  turned.shape.basis.components[0].vectors.col(7) *= -1;
+  EXPECT_FALSE(SameFingerprint(of(sphere), of(turned)));
+}
+
+TEST(Fingerprint, CoversPatches) {
+  const HarmonicBasis sphere = Compute(SphereMesh(4), {20}).shape.basis;
+  HarmonicBasis patches = Compute(SphereMesh(3), {92}).shape.basis;
+  const auto good = Fingerprint(sphere, patches);
+  EXPECT_FALSE(SameFingerprint(good, Fingerprint(sphere, {})));
+  patches.components[0].vectors.col(91) *= -1;
+  EXPECT_FALSE(SameFingerprint(good, Fingerprint(sphere, patches)));
+}
+
+TEST(Fingerprint, IsOneOfManyPoints) {  // however many constants there are
+  HarmonicBasis points;
+  for (std::uint32_t i = 0; i < 100000; ++i) {
+    points.components.push_back({{i, 1}, Eigen::MatrixXd::Ones(1, 1), Eigen::VectorXd::Zero(1)});
+  }
+  EXPECT_EQ(Fingerprint(points, points), (std::array<float, 2>{0, 0}));
 }
 
 }  // namespace

@@ -219,7 +219,7 @@ Status Decoder::Impl::DecodeIFrame(std::span<const std::uint8_t> payload) {
   out.colors = std::move(decoded.colors);
   SAC_RETURN_IF_ERROR(BuildShape(*header, std::move(decoded.mesh), syntax.harmonics, syntax.samples_per_harmonic,
                                  LimitsOfIFrame(settings.limits, payload.size()), shape_));
-  if (!SameFingerprint(shape_.basis.Fingerprint(), syntax.fingerprint)) {
+  if (!SameFingerprint(Fingerprint(shape_.basis, shape_.patch_basis), syntax.fingerprint)) {
     return Status::Unsupported("the harmonics computed here are not the encoder's");
   }
   out.positions = ToPositions(shape_.positions);

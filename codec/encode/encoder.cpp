@@ -217,7 +217,7 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings, 
       !status.ok()) {
     return status.code() == StatusCode::kLimit ? Status::Limit(status.message() + " of decoders") : status;
   }
-  syntax.fingerprint = shape_.basis.Fingerprint();
+  syntax.fingerprint = Fingerprint(shape_.basis, shape_.patch_basis);
   const std::vector<std::uint8_t> i_frame = WriteIFrame(syntax, header);
   encoder_ = std::make_unique<GroupEncoder>(shape_, header, settings.max_error.value_or(0));
 

@@ -160,7 +160,7 @@ bool Resynthesize(std::vector<Packet>& packets, std::mt19937& random) {
   ShareHarmonics(decoded.mesh, h, s, random);
   Shape shape;
   if (!BuildShape(h, std::move(decoded.mesh), s.harmonics, s.samples_per_harmonic, limits, shape).ok()) return false;
-  s.fingerprint = shape.basis.Fingerprint();
+  s.fingerprint = Fingerprint(shape.basis, shape.patch_basis);
 
   std::uint32_t total = 0;
   std::vector<Packet> made = {{PacketType::kHeader, WriteSequenceHeader(h)}, {PacketType::kIFrame, WriteIFrame(s, h)}};

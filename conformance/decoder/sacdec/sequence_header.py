@@ -7,7 +7,7 @@ from .byte_reader import ByteReader
 from .errors import require
 from .limits import Limits
 
-VERSION = (0, 6)
+VERSION = (0, 7)
 
 
 @dataclass(frozen=True)

@@ -106,8 +106,8 @@ class StreamDecoder:
         weights = edge_weights(edges, mesh.triangles, shape)
         masses = vertex_masses(mesh.triangles, shape)
         components = harmonics.component_harmonics(mesh, edges, weights, masses, side, header, limits)
-        harmonics.check_fingerprint(components, side.fingerprint)
         patches = harmonics.patch_harmonics(mesh, edges, weights) if header.detail_step > 0 else []
+        harmonics.check_fingerprint(components, patches, side.fingerprint)
         self.rows = plane_rows(header, side.harmonics, np.diff(mesh.patches).tolist())
         self.reconstruction = Reconstruction(header, mesh, edges, masses, components, patches, self.rows)
         self.clip = Clip(header, mesh)
