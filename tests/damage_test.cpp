@@ -66,6 +66,33 @@ void ExpectWithout(const Survived& got, const Decoded& whole, std::uint32_t firs
   EXPECT_EQ(got.lost[0].count, end - first);
 }
 
+TEST(Damage, BuffersAreCheckedWhenTheMeshIsReadAgain) {
+  // A packet that swallows the start and the first group: they come out of it when its check turns out wrong.
+  const std::vector<Packet> packets = Packets(Encode(BendingClip(kFrames), Grouped()).bytes);
+  Bytes hidden;
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Bytes packet = WritePacket(packets[i].type, packets[i].payload);
+    hidden.insert(hidden.end(), packet.begin(), packet.end());
+  }
+  Bytes stream = Concatenated({Join({}), WritePacket(PacketType::kGroup, hidden)});
+  stream.back() ^= 1;
+  DecoderSettings settings;
+  settings.skip_damage = true;
+  Decoder decoder(settings);
+  for (std::span<const std::uint8_t> rest(stream); !rest.empty();) ASSERT_TRUE(decoder.Send(rest).ok());
+  ASSERT_EQ(decoder.mesh(), nullptr);
+  std::vector<float> memory(3);
+  FrameBuffers buffers;
+  buffers.positions = {memory.data(), 12, 12, VertexFormat::kFloat32};
+  FrameInfo info;
+  EXPECT_EQ(decoder.Receive(buffers, info).code(), StatusCode::kInvalidArgument);
+  ASSERT_NE(decoder.mesh(), nullptr);
+  memory.resize(3 * decoder.mesh()->positions.size());
+  buffers.positions = {memory.data(), 4 * memory.size(), 12, VertexFormat::kFloat32};
+  EXPECT_TRUE(decoder.Receive(buffers, info).ok());  // it still waited
+  EXPECT_EQ(info.index, 0u);
+}
+
 // The bytes of each group, with those of its records.
 std::vector<std::pair<std::size_t, std::size_t>> GroupBytes(const Bytes& stream) {
   std::vector<std::pair<std::size_t, std::size_t>> groups;

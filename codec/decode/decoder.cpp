@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <functional>
 #include <optional>
 #include <string>
 #include <utility>
@@ -30,11 +29,12 @@ class Decoder::Impl {
   explicit Impl(const DecoderSettings& s) : settings(s), packets_(s.limits, s.skip_damage) {}
 
   Status Send(std::span<const std::uint8_t>& bytes);
-  Status Receive(Positions& positions, FrameInfo& info);
+  // Into `positions`, and from there into `buffers`, unless null, which are checked before anything is given out.
+  Status Receive(Positions& positions, FrameInfo& info, const FrameBuffers* buffers = nullptr);
   Status Finish();
   Status Seek(std::uint32_t frame, std::uint64_t& byte);
   Status AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed);
-  Status Interpolate(double time, Positions& positions, FrameInfo& info);
+  Status Interpolate(double time, Positions& positions, FrameInfo& info, const FrameBuffers* buffers = nullptr);
 
   // Keeps exceptions in. They are want of memory: the limits allow more than there is.
   template <class Call>
@@ -72,14 +72,14 @@ class Decoder::Impl {
   Status ContinueAt(std::uint32_t frame);
 
   bool FrameWaits() const { return source_ && next_out_ < source_->frames().end(); }
-  void Describe(std::uint32_t frame, double time, const Positions& positions, FrameInfo& info) const;
+  Status Check(const FrameBuffers* buffers) const {
+    return buffers ? CheckBuffers(*buffers, shape_.vertices()) : Status::Ok();
+  }
+  void GiveOut(std::uint32_t frame, double time, const Positions& positions, FrameInfo& info,
+               const FrameBuffers* buffers) const;
   Status Latch(Status status) {
     if (!status.ok()) error_ = status;
     return status;
-  }
-  // Runs `step` and latches what goes wrong.
-  Status Guard(const std::function<Status()>& step) {
-    return Contain([&] { return Latch(step()); });
   }
 
   PacketSource packets_;
@@ -115,7 +115,7 @@ class Decoder::Impl {
 Status Decoder::Impl::Send(std::span<const std::uint8_t>& bytes) {
   if (error_) return *error_;
   if (FrameWaits()) return Status::Ok();
-  return Guard([&] { return Advance(bytes); });
+  return Latch(Advance(bytes));
 }
 
 Status Decoder::Impl::Advance(std::span<const std::uint8_t>& bytes) {
@@ -143,10 +143,8 @@ bool Decoder::Impl::CanAdvance() {
 }
 
 Status Decoder::Impl::AdvanceAlone() {
-  return Guard([this] {
-    std::span<const std::uint8_t> none;
-    return FrameWaits() ? Status::Ok() : Advance(none);
-  });
+  std::span<const std::uint8_t> none;
+  return FrameWaits() ? Status::Ok() : Latch(Advance(none));
 }
 
 Status Decoder::Impl::Take(const Packet& packet, std::uint64_t begin) {
@@ -313,9 +311,10 @@ Status Decoder::Impl::TakeEnd(std::span<const std::uint8_t> payload, std::uint64
   return Status::Ok();
 }
 
-Status Decoder::Impl::Receive(Positions& positions, FrameInfo& info) {
+Status Decoder::Impl::Receive(Positions& positions, FrameInfo& info, const FrameBuffers* buffers) {
   while (true) {
     if (error_) return *error_;
+    SAC_RETURN_IF_ERROR(Check(buffers));  // again when bytes that are read again have had the mesh in them
     if (!FrameWaits()) {
       if (!CanAdvance()) return Status::NeedMoreData();
       SAC_RETURN_IF_ERROR(AdvanceAlone());
@@ -324,30 +323,31 @@ Status Decoder::Impl::Receive(Positions& positions, FrameInfo& info) {
     const auto frame = static_cast<std::uint32_t>(next_out_++);
     const bool shown = frame >= wanted_ && frame % settings.frame_step == 0;
     if (!shown && !header->references_previous()) continue;
-    const auto reconstruct = [&] { return source_->Reconstruct(frame, settings.frame_step, positions); };
-    if (const Status status = Guard(reconstruct); !status.ok()) {
-      if (!settings.skip_damage) return status;
-      error_.reset();
+    if (const Status status = source_->Reconstruct(frame, settings.frame_step, positions); !status.ok()) {
+      if (!settings.skip_damage) return Latch(status);
       lost.Add(frame, std::uint64_t{frame} + 1);
       continue;
     }
     if (!shown) continue;
-    Describe(frame, frame, positions, info);
+    GiveOut(frame, frame, positions, info, buffers);
     return Status::Ok();
   }
 }
 
-void Decoder::Impl::Describe(std::uint32_t frame, double time, const Positions& positions, FrameInfo& info) const {
+void Decoder::Impl::GiveOut(std::uint32_t frame, double time, const Positions& positions, FrameInfo& info,
+                            const FrameBuffers* buffers) const {
   info.index = frame;
   info.intra = source_->IsIntra(frame);
   info.time = header->frame_rate_numerator == 0 ? 0 : time / header->frames_per_second();
   info.box = BoundingBox(positions);
+  if (buffers) FillBuffers(positions, shape_.triangles, info.box, *buffers);
 }
 
-Status Decoder::Impl::Interpolate(double time, Positions& positions, FrameInfo& info) {
+Status Decoder::Impl::Interpolate(double time, Positions& positions, FrameInfo& info, const FrameBuffers* buffers) {
   if (error_) return *error_;
   if (!(time >= 0 && time <= 0xfffffffeu)) return Status::InvalidArgument("a time that is no frame's");
   if (!source_) return Status::NeedMoreData();
+  SAC_RETURN_IF_ERROR(Check(buffers));
   if (header->references_previous())
     return Status::Unsupported("frames measured against the frame before have none between");
   if (total_frames_.value_or(0) > 0) time = std::min(time, *total_frames_ - 1.0);
@@ -361,14 +361,9 @@ Status Decoder::Impl::Interpolate(double time, Positions& positions, FrameInfo& 
     SAC_RETURN_IF_ERROR(AdvanceAlone());
   }
   next_out_ = std::max<std::uint64_t>(next_out_, frame);
-  Status status;
-  try {
-    status = source_->Interpolate(time, positions);
-  } catch (const std::exception& e) {
-    status = Status::Limit(e.what());
-  }
-  if (status.ok()) Describe(frame, time, positions, info);
-  return status;
+  SAC_RETURN_IF_ERROR(source_->Interpolate(time, positions));
+  GiveOut(frame, time, positions, info, buffers);
+  return Status::Ok();
 }
 
 Status Decoder::Impl::Seek(std::uint32_t frame, std::uint64_t& byte) {
@@ -452,19 +447,13 @@ const std::vector<std::uint32_t>& Decoder::order() const { return impl_->order; 
 const std::vector<FrameRange>& Decoder::lost_frames() const { return impl_->lost.ranges(); }
 
 Status Decoder::Receive(const FrameBuffers& buffers, FrameInfo& info) {
-  if (mesh()) SAC_RETURN_IF_ERROR(CheckBuffers(buffers, mesh()->positions.size()));
   Positions positions;
-  SAC_RETURN_IF_ERROR(impl_->Contain([&] { return impl_->Receive(positions, info); }));
-  FillBuffers(positions, mesh()->triangles, info.box, buffers);
-  return Status::Ok();
+  return impl_->Contain([&] { return impl_->Receive(positions, info, &buffers); });
 }
 
 Status Decoder::Interpolate(double time, const FrameBuffers& buffers, FrameInfo& info) {
-  if (mesh()) SAC_RETURN_IF_ERROR(CheckBuffers(buffers, mesh()->positions.size()));
   Positions positions;
-  SAC_RETURN_IF_ERROR(impl_->Contain([&] { return impl_->Interpolate(time, positions, info); }));
-  FillBuffers(positions, mesh()->triangles, info.box, buffers);
-  return Status::Ok();
+  return impl_->Contain([&] { return impl_->Interpolate(time, positions, info, &buffers); });
 }
 
 Status Decoder::SeekTime(double seconds, std::uint64_t& byte) {
