@@ -48,7 +48,7 @@ Status Take(const Packet& packet, PacketSummary& line, StreamSummary& summary) {
     case PacketType::kEnd:
       if (!summary.i_frame) return Status::Corrupt("the end before the I-frame");
       summary.ended = true;
-      SAC_RETURN_IF_ERROR(ParseEnd(packet.payload, end));
+      SAC_RETURN_IF_ERROR(ParseEnd(packet.payload, {}, end));
       summary.has_index = end.index.has_value();
       if (end.frames != summary.frames) {
         return Status::Corrupt("end: " + std::to_string(end.frames) + " frames declared, " +

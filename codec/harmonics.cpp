@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -17,8 +18,10 @@ namespace sac {
 namespace {
 
 constexpr double kInhomogeneity = 0.1;
-constexpr std::uint32_t kDenseSize = 96;  // up to here all eigenpairs at once are as quick as the wanted ones
-constexpr int kSpareVectors = 20;         // of Lanczos, beside two for each wanted one
+constexpr std::uint32_t kDenseSize = 96;   // up to here all eigenpairs at once are as quick as the wanted ones
+constexpr int kSpareVectors = 20;          // of Lanczos, beside two for each wanted one
+constexpr double kFunctionsMemory = 1000;  // a vertex, of the radial functions that reach it on a surface
+constexpr double kFunctionMemory = 40;     // of each of them
 // Surfaces take 1 or 2 restarts; what is next to a long path, whose eigenvalues are all but equal, takes hundreds.
 constexpr int kUsualRestarts = 5, kMostRestarts = 60;
 
@@ -89,7 +92,11 @@ bool SmallestEigenpairs(const Matrix& lower, std::uint32_t count, EigenPairs& ou
   Eigen::VectorXd start(n);
   for (Eigen::Index i = 0; i < n; ++i) start[i] = Generic(static_cast<std::uint32_t>(i));
   solver.init(start.data());
-  solver.compute(Spectra::SortRule::LargestMagn, kMostRestarts, 1e-13, Spectra::SortRule::SmallestAlge);
+  try {
+    solver.compute(Spectra::SortRule::LargestMagn, kMostRestarts, 1e-13, Spectra::SortRule::SmallestAlge);
+  } catch (const std::runtime_error&) {  // of its small eigenproblems
+    return false;
+  }
   if (solver.info() != Spectra::CompInfo::Successful) return false;
   out = {solver.eigenvalues(), solver.eigenvectors()};
   return true;
@@ -148,9 +155,9 @@ bool ReducedHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen:
   return Refine(laplacian, mass, rows * mixed, out);
 }
 
-bool ComputeComponent(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,
-                      std::span<const std::array<std::uint32_t, 3>> grid, std::uint32_t count,
-                      std::uint32_t samples_per_harmonic, ComponentHarmonics& out) {
+Status ComputeComponent(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,
+                        std::span<const std::array<std::uint32_t, 3>> grid, std::uint32_t count,
+                        std::uint32_t samples_per_harmonic, const Spare& spare, ComponentHarmonics& out) {
   const Component& c = out.component;
   const auto points = grid.subspan(c.first, c.count);
   // spec.md 6.4.2: weights are stretched unevenly, which splits the multiple eigenvalues of symmetric shapes.
@@ -173,14 +180,21 @@ bool ComputeComponent(const EdgeList& edges, std::span<const double> weights, co
 
   const std::uint64_t samples = static_cast<std::uint64_t>(samples_per_harmonic) * count;
   Eigen::SparseMatrix<double> functions;
-  if (count > 1 && samples > 0 && samples < c.count)
-    functions = RadialFunctions(points, static_cast<std::uint32_t>(samples));
+  if (count > 1 && samples > 0 && samples < c.count) {
+    // A vertex that k functions reach is in k^2 of their products.
+    const double most =
+        std::min((kFunctionsMemory * c.count + spare.memory) / kFunctionMemory,
+                 std::sqrt((HarmonicsWork(c.count, count, static_cast<double>(samples)) + spare.work) * c.count));
+    if (!RadialFunctions(points, static_cast<std::uint32_t>(samples), most, functions)) {
+      return Status::Limit("the harmonic basis takes more work or memory than the limit");
+    }
+  }
   EigenPairs pairs;
   if (count == 1) {
     pairs = {Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Ones(c.count, 1)};
   } else if (!(functions.cols() > 0 ? ReducedHarmonics(laplacian, mass, functions, count, pairs)
                                     : ExactHarmonics(laplacian, mass, count, pairs))) {
-    return false;
+    return Status::Corrupt("harmonics do not converge");
   }
   out.eigenvalues = pairs.values.cwiseMax(0);
   out.vectors = std::move(pairs.vectors);
@@ -194,7 +208,7 @@ bool ComputeComponent(const EdgeList& edges, std::span<const double> weights, co
     const double mean_square = h.cwiseAbs2().dot(mass) / mass.sum();
     h *= (k > 0 && sign < 0 ? -1.0 : 1.0) / std::sqrt(mean_square);
   }
-  return true;
+  return Status::Ok();
 }
 
 // The part of the generic bilinear form that these vectors have in it; constant functions have none.
@@ -251,26 +265,25 @@ double HarmonicsWork(double vertices, double harmonics, double samples) {
 }
 
 double HarmonicsMemory(double vertices, double harmonics, double samples) {
-  constexpr double kValue = sizeof(double), kFunctions = 1000;  // a vertex, of the radial functions around it
+  constexpr double kValue = sizeof(double);
   if (harmonics == 1) return kValue * vertices;
   const Eigenproblem problem(vertices, harmonics, samples);
   const double n = problem.size, kept = kValue * vertices * harmonics;
   const double vectors = kValue * (n <= kDenseSize ? 4 * n * n : n * problem.basis);
-  return problem.reduced ? 4 * kept + kFunctions * vertices + vectors + 6 * kValue * n * n : 2 * kept + vectors;
+  return problem.reduced ? 4 * kept + kFunctionsMemory * vertices + vectors + 6 * kValue * n * n : 2 * kept + vectors;
 }
 
 Status ComputeHarmonics(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,
                         std::span<const std::array<std::uint32_t, 3>> grid, std::span<const Component> components,
-                        std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic,
+                        std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic, const Spare& spare,
                         HarmonicBasis& basis) {
   basis.components.clear();
   basis.order = HarmonicOrder(counts);
   for (std::size_t i = 0; i < components.size(); ++i) {
     ComponentHarmonics& c = basis.components.emplace_back();
     c.component = components[i];
-    if (!ComputeComponent(edges, weights, masses, grid, counts[i], samples_per_harmonic, c)) {
-      return Status::Corrupt("the harmonics of component " + std::to_string(i) + " do not converge");
-    }
+    const Status status = ComputeComponent(edges, weights, masses, grid, counts[i], samples_per_harmonic, spare, c);
+    if (!status.ok()) return {status.code(), "component " + std::to_string(i) + ": " + status.message()};
   }
   return Status::Ok();
 }

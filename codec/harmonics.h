@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <vector>
 
@@ -39,12 +40,19 @@ double HarmonicsWork(double vertices, double harmonics, double samples);
 // Bytes that they take, and their computation with them, at most, about.
 double HarmonicsMemory(double vertices, double harmonics, double samples);
 
+// What is left for what HarmonicsWork() and HarmonicsMemory() do not count: radial functions of vertices that fill a
+// volume, which more of them reach than on a surface.
+struct Spare {
+  double work = std::numeric_limits<double>::infinity();
+  double memory = std::numeric_limits<double>::infinity();
+};
+
 // Computes the basis as spec.md 6.4 defines it. `grid` holds the vertices' integer positions, `masses` and `weights`
 // are of the decoded first frame; the components may also be patches. kCorrupt when an eigenvalue problem does not
-// converge.
+// converge, kLimit when there is not enough to spare.
 Status ComputeHarmonics(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,
                         std::span<const std::array<std::uint32_t, 3>> grid, std::span<const Component> components,
-                        std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic,
+                        std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic, const Spare& spare,
                         HarmonicBasis& basis);
 
 }  // namespace sac

@@ -27,7 +27,9 @@ double Wendland(double t) {
 
 }  // namespace
 
-Eigen::SparseMatrix<double> RadialFunctions(std::span<const std::array<std::uint32_t, 3>> grid, std::uint32_t samples) {
+bool RadialFunctions(std::span<const std::array<std::uint32_t, 3>> grid, std::uint32_t samples, double most_values,
+                     Eigen::SparseMatrix<double>& functions) {
+  functions.resize(0, 0);
   // Farthest-point sampling from the first vertex on; of equally far vertices the first.
   std::vector<std::uint64_t> distance(grid.size(), std::numeric_limits<std::uint64_t>::max());
   std::vector<std::size_t> chosen = {0};
@@ -40,7 +42,7 @@ Eigen::SparseMatrix<double> RadialFunctions(std::span<const std::array<std::uint
     }
     covering = distance[farthest];
     if (chosen.size() == samples) break;
-    if (covering == 0) return {};
+    if (covering == 0) return true;
     chosen.push_back(farthest);
   }
 
@@ -51,14 +53,19 @@ Eigen::SparseMatrix<double> RadialFunctions(std::span<const std::array<std::uint
     for (std::size_t v = 0; v < grid.size(); ++v) {
       const double t = std::sqrt(static_cast<double>(SquaredDistance(grid[v], grid[chosen[i]]))) / radius;
       if (t >= 1) continue;
+      if (static_cast<double>(entries.size()) >= most_values) return false;
       const double value = Wendland(t);
       entries.emplace_back(static_cast<int>(v), static_cast<int>(i), value);
       sum[static_cast<Eigen::Index>(v)] += value;
     }
   }
-  Eigen::SparseMatrix<double> functions(static_cast<Eigen::Index>(grid.size()), samples);
+  functions.resize(static_cast<Eigen::Index>(grid.size()), samples);
   functions.setFromTriplets(entries.begin(), entries.end());
-  return sum.cwiseInverse().asDiagonal() * functions;
+  sum = sum.cwiseInverse();
+  for (Eigen::Index i = 0; i < functions.outerSize(); ++i) {
+    for (Eigen::SparseMatrix<double>::InnerIterator it(functions, i); it; ++it) it.valueRef() *= sum[it.row()];
+  }
+  return true;
 }
 
 }  // namespace sac

@@ -1,13 +1,16 @@
 #include "codec/reconstruct.h"
 
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
-#include <utility>
 
 #include "codec/deformation.h"
 
 namespace sac {
 namespace {
+
+// What is left of a sum when so much less is to be added up is mostly its rounding errors.
+constexpr double kLeft = 1.0 / (1 << 16);
 
 constexpr std::array kHarmonicPlanes = {kMotion, kDisplacement, kDetail};
 
@@ -50,9 +53,15 @@ PlaneField::PlaneField(const HarmonicBasis& basis, const PlaneLayout& layout, Ei
 void PlaneField::Reset() {
   std::fill(held_.begin(), held_.end(), 0);
   values_.setZero();
+  largest_ = 0;
 }
 
 const Eigen::MatrixXd& PlaneField::Update(const PlaneValues& coefficients) {
+  const Eigen::Map<const Eigen::Matrix<std::int32_t, -1, -1, Eigen::RowMajor>> rows(coefficients.data(), units_.size(),
+                                                                                    values_.cols());
+  const double size = units_.dot(rows.cast<double>().cwiseAbs().rowwise().sum());
+  if (size < kLeft * largest_) Reset();
+  largest_ = std::max(largest_, size);
   std::size_t i = 0;
   Eigen::Index row = 0;
   for (const HarmonicIndex& index : basis_.order) {
@@ -91,8 +100,8 @@ bool Reconstructor::StartFrame(bool intra) {
 }
 
 bool Reconstructor::UseKeyReference() {
-  if (std::exchange(reference_is_key_, true)) return true;
-  return poisson_.SetReference(shape_.positions, shape_.weights);
+  if (!reference_is_key_) reference_is_key_ = poisson_.SetReference(shape_.positions, shape_.weights);
+  return reference_is_key_;
 }
 
 const PositionMatrix& Reconstructor::ReconstructMotion(const PlaneValues& motion) {
@@ -138,6 +147,15 @@ PositionMatrix Reconstructor::ApplyRigid(const PositionMatrix& aligned,
   const Eigen::Matrix3d transposed = Rotation(rigid).transpose();  // positions are rows
   PositionMatrix moved = (aligned.rowwise() - shape_.centre) * transposed;
   moved.rowwise() += Translation(rigid);
+  return moved;
+}
+
+PositionMatrix Reconstructor::ApplyRigidBetween(const std::array<std::int32_t, 6>& from,
+                                                const std::array<std::int32_t, 6>& to, double t) const {
+  const Eigen::Quaterniond a(Rotation(from)), b(Rotation(to));
+  const Eigen::Matrix3d transposed = a.slerp(t, b).toRotationMatrix().transpose();
+  PositionMatrix moved = (aligned_.rowwise() - shape_.centre) * transposed;
+  moved.rowwise() += (1 - t) * Translation(from) + t * Translation(to);
   return moved;
 }
 

@@ -33,6 +33,7 @@ class PlaneField {
   Eigen::VectorXd units_;
   std::vector<std::int32_t> held_;
   Eigen::MatrixXd values_;
+  double largest_ = 0;  // sum of magnitudes since values_ were zero
 };
 
 // The unit of each row of a plane in harmonics (spec.md 6.5.1): a sixteenth of the header's step. It is larger in small
@@ -58,6 +59,11 @@ class Reconstructor {
   const PositionMatrix& Add(Plane plane, const PlaneValues& values);
   // The frame in model units: `aligned` after its rigid motion (spec.md 6.5.4).
   PositionMatrix ApplyRigid(const PositionMatrix& aligned, const std::array<std::int32_t, 6>& rigid) const;
+  // Likewise of what there is of the frame, after a motion between two, `t` of 0 to 1. Of rotations it takes the
+  // shorter way, whatever turns their vectors have in them: groups unwrap rotations each from its own begin.
+  // Non-normative.
+  PositionMatrix ApplyRigidBetween(const std::array<std::int32_t, 6>& from, const std::array<std::int32_t, 6>& to,
+                                   double t) const;
   // The inverse, for encoders: positions as they were before the rigid motion.
   PositionMatrix RemoveRigid(const PositionMatrix& positions, const std::array<std::int32_t, 6>& rigid) const;
 

@@ -11,6 +11,7 @@ namespace sac {
 namespace {
 
 constexpr std::uint64_t kFactorMemory = 12;  // a value: a double and its row
+constexpr std::uint64_t kFieldMemory = 700;  // a vertex, of a Reconstructor and the frames that it has ready
 
 // Judges the sizes of the harmonics, and adds up their work.
 Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> components,
@@ -54,6 +55,7 @@ Status CheckSystems(const SequenceHeader& header, const Limits& limits, Shape& s
   }
   shape.work += 3 * probe.size().work;
   shape.memory += 2 * kFactorMemory * probe.size().values;
+  shape.reconstructor_memory = kFactorMemory * probe.size().values + kFieldMemory * vertices;
   if (MostGroupValues(limits, shape) < FrameValues(shape.layouts))
     return Status::Limit("a frame takes more memory than the limit");
   double frame = 6.0 * static_cast<double>(probe.size().values);
@@ -76,6 +78,14 @@ Limits LimitsOfIFrame(const Limits& limits, std::size_t i_frame_bytes) {
 
 std::uint64_t MostGroupValues(const Limits& limits, const Shape& shape) {
   return std::min(limits.group_values, (limits.memory - std::min(limits.memory, shape.memory)) / kCoefficientMemory);
+}
+
+unsigned UseThreads(unsigned threads, const Limits& limits, Shape& shape) {
+  const std::uint64_t left = limits.memory - std::min(limits.memory, shape.memory);
+  const std::uint64_t more =
+      std::min<std::uint64_t>(threads - 1, left / 2 / std::max<std::uint64_t>(1, shape.reconstructor_memory));
+  shape.memory += more * shape.reconstructor_memory;
+  return static_cast<unsigned>(1 + more);
 }
 
 Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<const std::uint32_t> counts,
@@ -107,11 +117,12 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
   if (header.detail_step > 0) {
     // Every vertex alike: a plain orthogonal basis of each patch.
     const Eigen::VectorXd alike = Eigen::VectorXd::Ones(shape.positions.rows());
-    SAC_RETURN_IF_ERROR(ComputeHarmonics(shape.edges, shape.weights, alike, mesh.grid, mesh.patches, patch_sizes, 0,
+    SAC_RETURN_IF_ERROR(ComputeHarmonics(shape.edges, shape.weights, alike, mesh.grid, mesh.patches, patch_sizes, 0, {},
                                          shape.patch_basis));
   }
-  return ComputeHarmonics(shape.edges, shape.weights, shape.masses, mesh.grid, shape.components, counts,
-                          samples_per_harmonic, shape.basis);
+  return ComputeHarmonics(
+      shape.edges, shape.weights, shape.masses, mesh.grid, shape.components, counts, samples_per_harmonic,
+      {limits.basis_work - shape.work, static_cast<double>(limits.memory - shape.memory)}, shape.basis);
 }
 
 }  // namespace sac

@@ -38,7 +38,8 @@ struct Shape {
   HarmonicBasis patch_basis;  // empty without a detail plane
   PlaneLayouts layouts;
   double work = 0;           // multiplications that all this took, about
-  std::uint64_t memory = 0;  // bytes that it takes, and took meanwhile, about
+  std::uint64_t memory = 0;  // bytes that it takes, and took meanwhile, about; with one Reconstructor of it
+  std::uint64_t reconstructor_memory = 0;  // of each more
 
   std::size_t vertices() const { return static_cast<std::size_t>(positions.rows()); }
 };
@@ -48,6 +49,10 @@ Limits LimitsOfIFrame(const Limits& limits, std::size_t i_frame_bytes);
 
 // How many values of planes a group may have, with what the shape leaves of the memory.
 std::uint64_t MostGroupValues(const Limits& limits, const Shape& shape);
+
+// How many of so many threads may have a Reconstructor each: all of them take no more than half of what the shape
+// leaves of the memory, and that off it.
+unsigned UseThreads(unsigned threads, const Limits& limits, Shape& shape);
 
 // Builds the shape. `counts`: harmonics per component, one for each component of `mesh`, at most its vertices.
 // kLimit when the basis or a frame would take more memory or work than `limits` allows, which is judged before either

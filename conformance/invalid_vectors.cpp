@@ -397,6 +397,7 @@ void AddDraco(Collection& c) {
   mesh("R31", "sequential", DracoOctahedron(plain, true, false));
   byte("R31", "flags", 10, 0x80);
   c.ChangeDraco("R32", "triangles", [](StreamParts& p) { p.header.triangles = 7; });
+  byte("R32", "attributes", 14, 4);
   byte("R32", "vertices", 12, 25);
   c.ChangeDraco("R32", "short", [](StreamParts& p) { p.i_frame.mesh.resize(12); });
   c.ChangeDraco("R33", "truncated", [](StreamParts& p) { p.i_frame.mesh.resize(p.i_frame.mesh.size() - 4); });

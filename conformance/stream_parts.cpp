@@ -71,7 +71,7 @@ StreamParts Split(const Bytes& stream) {
         parts.groups.push_back(packet->payload);
         break;
       case PacketType::kEnd:
-        Require(ParseEnd(packet->payload, end));
+        Require(ParseEnd(packet->payload, {}, end));
         parts.frames = end.frames;
         break;
       case PacketType::kFrame:

@@ -37,10 +37,11 @@ int main(int argc, char** argv) {
     fprintf(stderr, "usage: play_c STREAM\n");
     return 2;
   }
-  sac_decoder* decoder = sac_decoder_open(NULL);
+  sac_decoder* decoder;
   sac_frame_buffers buffers = {0};
   uint64_t byte = 0;
-  sac_status status = decoder == NULL ? SAC_LIMIT : play(decoder, file, &buffers);
+  sac_status status = sac_decoder_open(&decoder, NULL);
+  if (status == SAC_OK) status = play(decoder, file, &buffers);
   if (status == SAC_OK) status = sac_decoder_seek(decoder, 0, &byte);
   if (status == SAC_OK && fseek(file, (long)byte, SEEK_SET) == 0) status = play(decoder, file, &buffers);
   if (status != SAC_OK) fprintf(stderr, "play_c: %s: %s\n", argv[1], sac_decoder_message(decoder));

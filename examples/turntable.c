@@ -116,8 +116,8 @@ int main(int argc, char** argv) {
   }
   struct scene* s = calloc(1, sizeof *s);
   OSMesaContext context = OSMesaCreateContextExt(OSMESA_RGBA, 24, 0, 0, NULL);
-  sac_decoder* decoder = sac_decoder_open(NULL);
-  if (s == NULL || context == NULL || decoder == NULL ||
+  sac_decoder* decoder;
+  if (s == NULL || context == NULL || sac_decoder_open(&decoder, NULL) != SAC_OK ||
       !OSMesaMakeCurrent(context, s->pixels, GL_UNSIGNED_BYTE, kSize, kSize)) {
     fprintf(stderr, "turntable: cannot draw\n");
     return 1;

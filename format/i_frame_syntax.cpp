@@ -28,7 +28,7 @@ void CodeFloat(Coder& coder, float& value) {
 // Calls `code` for each element of a list of at most `limit`; a decoder appends as it reads, so that a false length
 // costs no memory. False when the length or the code is malformed.
 template <class Coder, class T, class F>
-bool CodeList(Coder& coder, std::vector<T>& list, std::uint32_t limit, F&& code) {
+bool CodeList(Coder& coder, std::vector<T>& list, std::uint64_t limit, F&& code) {
   UnsignedModels size_models;
   auto size = static_cast<std::uint32_t>(list.size());
   CodeUnsigned(coder, size_models, size);
@@ -56,7 +56,7 @@ template <class Coder>
 const char* CodeSide(Coder& coder, const SequenceHeader& header, IFrameSyntax& s) {
   UnsignedModels gap, back;
   std::uint32_t next = 1;  // the smallest point that can be welded
-  if (!CodeList(coder, s.welds, 3 * header.triangles, [&](Weld& w) {
+  if (!CodeList(coder, s.welds, 3 * static_cast<std::uint64_t>(header.triangles), [&](Weld& w) {
         std::uint32_t skip = w.point - next, distance = w.point - w.onto - 1;
         CodeUnsigned(coder, gap, skip);
         CodeUnsigned(coder, back, distance);

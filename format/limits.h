@@ -31,7 +31,7 @@ constexpr std::uint64_t MeshMemory(std::uint64_t vertices, std::uint64_t triangl
   return 500 * vertices + 350 * triangles;
 }
 
-// Of a value of a plane: the coefficient and its residual.
-constexpr std::uint64_t kCoefficientMemory = 8;
+// Of a value of a plane: the coefficient, its residual, and a coefficient of the group before.
+constexpr std::uint64_t kCoefficientMemory = 12;
 
 }  // namespace sac

@@ -72,6 +72,7 @@ class PacketReader {
   std::vector<std::uint8_t> TakePending();
   // Bytes taken so far.
   std::uint64_t position() const { return position_; }
+  bool IsBetweenPackets() const { return pending_.empty(); }
 
  private:
   // Judges the tag, or the size of a record, that is pending.

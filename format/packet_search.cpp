@@ -13,10 +13,13 @@ constexpr std::size_t kTagBytes = 5;  // at most
 constexpr std::uint64_t kTrimAfter = 1 << 16;
 // Larger packets are not looked for: any byte may claim one, and would make us hold what follows.
 constexpr std::uint32_t kMostPayload = 1 << 24;
+constexpr std::uint64_t kMemoryOfByte = 50;  // that is held: itself, and a candidate that begins there
 
 }  // namespace
 
-PacketSearch::PacketSearch(const Limits& limits) : most_payload_(std::min(limits.packet_bytes, kMostPayload)) {}
+PacketSearch::PacketSearch(const Limits& limits)
+    : most_payload_(static_cast<std::uint32_t>(
+          std::min<std::uint64_t>({limits.packet_bytes, kMostPayload, limits.memory / kMemoryOfByte}))) {}
 
 bool PacketSearch::TakeStart(const Start& start) {
   const std::span<const std::uint8_t> rest = std::span(held_).subspan(start.begin - held_from_);

@@ -19,7 +19,8 @@ class PacketSearch {
   explicit PacketSearch(const Limits& limits);
 
   // Takes bytes from the front of `bytes` until a packet is complete, which ends the search, or `bytes` is empty.
-  // Holds at most 16 MB; larger packets are not found.
+  // Holds the bytes of the largest packet that is looked for, 16 MB at most, and up to 50 bytes for each; larger
+  // packets are not found.
   void Read(std::span<const std::uint8_t>& bytes, std::optional<Packet>& packet);
 
  private:

@@ -102,6 +102,12 @@ bool RangeDecoder::AtEnd() const {
   return std::uint64_t{low} + code_ == RoundestBetween(low, range_);
 }
 
+bool RangeDecoder::IsCertain() const {
+  if (!ok()) return false;
+  const std::size_t missing = std::max(position_, bytes_.size()) - bytes_.size();  // bytes of code_ taken for zeros
+  return code_ + ((std::uint64_t{1} << (8 * missing)) - 1) < range_;
+}
+
 void RangeDecoder::Normalize() {
   while (range_ < kTop) {
     code_ = (code_ << 8) | Next();

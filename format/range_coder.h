@@ -67,6 +67,8 @@ class RangeDecoder {
   bool ok() const { return position_ <= bytes_.size() + 4; }
   // Whether the code ends where the bytes do, and as an encoder ends it (spec.md 7.1): no other bytes say the same.
   bool AtEnd() const;
+  // Whether what was read would be the same if other bytes followed: of a code that is cut off, all else is made up.
+  bool IsCertain() const;
 
  private:
   std::uint8_t Next() {

@@ -3,10 +3,14 @@
 #include <utility>
 
 #include "format/bytes.h"
-#include "format/limits.h"
 #include "format/packet.h"
 
 namespace sac {
+namespace {
+
+constexpr std::uint64_t kIndexMemory = 64;  // of a group in it and in a table of places, while they grow
+
+}  // namespace
 
 std::vector<std::uint8_t> WriteEnd(const EndSyntax& end) {
   ByteWriter out;
@@ -23,7 +27,7 @@ std::vector<std::uint8_t> WriteEnd(const EndSyntax& end) {
   return std::move(out.bytes());
 }
 
-Status ParseEnd(std::span<const std::uint8_t> payload, EndSyntax& end) {
+Status ParseEnd(std::span<const std::uint8_t> payload, const Limits& limits, EndSyntax& end) {
   ByteReader reader(payload);
   end.frames = reader.Varint();
   if (!reader.ok()) return Status::Corrupt("end: malformed");
@@ -37,6 +41,7 @@ Status ParseEnd(std::span<const std::uint8_t> payload, EndSyntax& end) {
     group.frames = reader.Varint();
     frames += group.frames;
     index.groups.push_back(group);
+    if (index.groups.size() * kIndexMemory > limits.memory) return Status::Limit("an index larger than the limit");
   }
   const std::uint32_t size = reader.U32();
   if (!reader.ok() || reader.remaining() != 0) return Status::Corrupt("end: malformed index");
@@ -44,19 +49,19 @@ Status ParseEnd(std::span<const std::uint8_t> payload, EndSyntax& end) {
   return Status::Ok();
 }
 
-Status ReadIndex(std::span<const std::uint8_t> tail, StreamIndex& index, std::size_t& needed) {
+Status ReadIndex(std::span<const std::uint8_t> tail, const Limits& limits, StreamIndex& index, std::size_t& needed) {
   const Status none = Status::InvalidArgument("the stream has no index, or is not whole");
   needed = kStreamTail;
   if (tail.size() < kStreamTail) return Status::NeedMoreData();
   ByteReader last(tail.last(kStreamTail));
   const std::uint32_t size = last.U32();
-  if (size <= kStreamTail || size > PacketSize(Limits{}.packet_bytes)) return none;
+  if (size <= kStreamTail || size > PacketSize(limits.packet_bytes)) return none;
   needed = size;
   if (tail.size() < size) return Status::NeedMoreData();
   Packet packet;
   EndSyntax end;
   if (!ParsePacket(tail.last(size), packet) || packet.type != PacketType::kEnd) return none;
-  SAC_RETURN_IF_ERROR(ParseEnd(packet.payload, end));
+  SAC_RETURN_IF_ERROR(ParseEnd(packet.payload, limits, end));
   if (!end.index) return none;
   index = std::move(*end.index);
   return Status::Ok();

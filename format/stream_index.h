@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "format/limits.h"
 #include "format/status.h"
 
 namespace sac {
@@ -32,14 +33,15 @@ struct EndSyntax {
 // The payload of an end packet.
 std::vector<std::uint8_t> WriteEnd(const EndSyntax& end);
 
-// The inverse. kCorrupt when malformed.
-Status ParseEnd(std::span<const std::uint8_t> payload, EndSyntax& end);
+// The inverse. kCorrupt when malformed; kLimit when the index takes more memory than the limit.
+Status ParseEnd(std::span<const std::uint8_t> payload, const Limits& limits, EndSyntax& end);
 
 // A stream with an index tells in its last bytes how large its end packet is.
 inline constexpr std::size_t kStreamTail = 8;
 
 // The index of a stream whose last bytes are `tail`. kNeedMoreData when the end packet is larger than `tail`: `needed`
-// says how many of the last bytes hold it. kInvalidArgument when the stream has no index, or is not whole.
-Status ReadIndex(std::span<const std::uint8_t> tail, StreamIndex& index, std::size_t& needed);
+// says how many of the last bytes hold it. kInvalidArgument when the stream has no index, or is not whole, or the end
+// packet is larger than the limit; kLimit likewise of the index.
+Status ReadIndex(std::span<const std::uint8_t> tail, const Limits& limits, StreamIndex& index, std::size_t& needed);
 
 }  // namespace sac

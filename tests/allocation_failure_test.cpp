@@ -28,7 +28,7 @@ Bytes Read(const char* file) {
 }
 
 // Sends all of `stream` in two chunks, drops the frames.
-Status DecodeAll(Decoder& decoder, const Bytes& stream) {
+Status DecodeAll(Decoder& decoder, const Bytes& stream, std::vector<Positions>* frames = nullptr) {
   DecodedFrame frame;
   Status status;
   const std::span<const std::uint8_t> all(stream);
@@ -36,6 +36,7 @@ Status DecodeAll(Decoder& decoder, const Bytes& stream) {
     while (!rest.empty()) {
       SAC_RETURN_IF_ERROR(decoder.Send(rest));
       while ((status = decoder.Receive(frame)).ok()) {
+        if (frames) frames->push_back(frame.positions);
       }
       if (status.code() != StatusCode::kNeedMoreData) return status;
     }
@@ -97,6 +98,44 @@ void FailEach(const char* file, long most_trials) {
   }
   EXPECT_GT(refused, 100);
   EXPECT_LT(unharmed, refused / 4);
+}
+
+// With memory again, the clip is played from its begin as if nothing had been.
+void GoOnAfterEach(const char* file, unsigned threads) {
+  SCOPED_TRACE(file);
+  const Bytes stream = Read(file);
+  DecoderSettings settings;
+  settings.threads = threads;
+  std::vector<Positions> whole;
+  {
+    Decoder decoder(settings);
+    ASSERT_TRUE(DecodeAll(decoder, stream, &whole).ok());
+  }
+  int sought = 0;
+  const long allocations = Try(stream, -1, false).allocations;
+  for (long n = 0; n < allocations; n += 1 + allocations / 400) {
+    Decoder decoder(settings);
+    counted_memory.until_failure = n;
+    counted_memory.fail_on = true;
+    (void)DecodeAll(decoder, stream);
+    counted_memory.until_failure = -1;
+    std::uint64_t byte = 0;
+    if (!decoder.Seek(0, byte).ok()) continue;  // before the mesh was there
+    ++sought;
+    std::vector<Positions> again;
+    const Status status =
+        DecodeAll(decoder, Bytes(stream.begin() + static_cast<std::ptrdiff_t>(byte), stream.end()), &again);
+    ASSERT_TRUE(status.ok()) << "allocation " << n << ": " << status.message();
+    ASSERT_EQ(again, whole) << "allocation " << n;
+  }
+  EXPECT_GT(sought, 20);
+}
+
+TEST(AllocationFailure, IsOverWhenItIsOver) {
+  GoOnAfterEach("small.sac", 1);
+  GoOnAfterEach("groups_of_one.sac", 1);
+  GoOnAfterEach("previous.sac", 1);
+  GoOnAfterEach("pyramids.sac", 1);
 }
 
 // Each allocation of streams without and with Draco, whole and open groups, exact and reduced harmonics.

@@ -28,7 +28,7 @@ struct Player {
   std::vector<sac_frame_info> shown;
   std::vector<std::vector<float>> frames;
 
-  explicit Player(const sac_settings* settings = nullptr) : decoder(sac_decoder_open(settings)) {}
+  explicit Player(const sac_settings* settings = nullptr) { EXPECT_EQ(sac_decoder_open(&decoder, settings), SAC_OK); }
   ~Player() { sac_decoder_close(decoder); }
 
   sac_status Play(const std::vector<std::uint8_t>& stream, std::size_t from, std::size_t chunk) {
@@ -152,10 +152,30 @@ TEST(CApi, SettingsCount) {
 
   sac_settings_init(&settings);
   settings.struct_size += 8;  // of a library to come
-  EXPECT_EQ(sac_decoder_open(&settings), nullptr);
+  sac_decoder* none = nullptr;
+  EXPECT_EQ(sac_decoder_open(&none, &settings), SAC_UNSUPPORTED);
+  settings.struct_size = 8;  // before there was one
+  EXPECT_EQ(sac_decoder_open(&none, &settings), SAC_INVALID_ARGUMENT);
   sac_settings_init(&settings);
   settings.frame_step = 0;
-  EXPECT_EQ(sac_decoder_open(&settings), nullptr);
+  EXPECT_EQ(sac_decoder_open(&none, &settings), SAC_INVALID_ARGUMENT);
+  sac_settings_init(&settings);
+  settings.max_basis_work = std::nan("");
+  EXPECT_EQ(sac_decoder_open(&none, &settings), SAC_INVALID_ARGUMENT);
+  EXPECT_EQ(sac_decoder_open(nullptr, nullptr), SAC_INVALID_ARGUMENT);
+  EXPECT_EQ(none, nullptr);
+}
+
+TEST(CApi, TellsHowManyFramesThereAre) {
+  const std::vector<std::uint8_t> stream = Stream();
+  Player player;
+  std::uint32_t frames = 0;
+  EXPECT_EQ(sac_decoder_frames(player.decoder, &frames), SAC_NEED_MORE_DATA);
+  EXPECT_EQ(player.Play(stream, 0, 100), SAC_OK);
+  EXPECT_EQ(sac_decoder_frames(player.decoder, &frames), SAC_OK);
+  EXPECT_EQ(frames, kFrames);
+  EXPECT_EQ(sac_decoder_frames(player.decoder, nullptr), SAC_INVALID_ARGUMENT);
+  EXPECT_STREQ(sac_decoder_message(player.decoder), "a null pointer");
 }
 
 TEST(CApi, NothingIsTakenForGranted) {

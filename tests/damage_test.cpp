@@ -210,6 +210,63 @@ TEST(Damage, ACutStreamGivesAllWholeFrames) {
   EXPECT_GE(before, kFrames - 4);
 }
 
+TEST(Damage, TheGroupThatIsSoughtMayBeDamaged) {
+  const Bytes stream = Encode(BendingClip(kFrames), Grouped()).bytes;
+  const auto groups = GroupBytes(stream);
+  DecoderSettings settings;
+  settings.skip_damage = true;
+  Decoder decoder(settings);
+  const auto read = [&](const Bytes& from, std::uint64_t byte) {
+    std::vector<std::uint32_t> given;
+    for (auto rest = std::span(from).subspan(byte); !rest.empty();) {
+      EXPECT_TRUE(decoder.Send(rest).ok());
+      for (DecodedFrame frame; decoder.Receive(frame).ok();) given.push_back(frame.index);
+    }
+    return given;
+  };
+  EXPECT_EQ(read(stream, 0).size(), kFrames);
+  Bytes damaged = stream;
+  damaged[groups[1].second - 6] ^= 1;
+  std::uint64_t byte = 0;
+  ASSERT_TRUE(decoder.Seek(kGroup + 2, byte).ok());
+  EXPECT_EQ(byte, groups[1].first);
+  const std::vector<std::uint32_t> given = read(damaged, byte);
+  ASSERT_EQ(given.size(), kFrames - 2 * kGroup);
+  EXPECT_EQ(given[0], 2 * kGroup);
+  ASSERT_EQ(decoder.lost_frames().size(), 1u);
+  EXPECT_EQ(decoder.lost_frames()[0].first, kGroup);
+  EXPECT_EQ(decoder.lost_frames()[0].count, kGroup);
+}
+
+TEST(Damage, AnotherStreamIsNotShownOnThisMesh) {
+  const Bytes one = Encode(BendingClip(kGroup), Grouped()).bytes;
+  EncoderSettings settings = Grouped();
+  settings.harmonics = 12;
+  const Bytes other = Encode(BendingClip(3 * kGroup), settings).bytes;
+  const std::vector<Packet> first = Packets(one), second = Packets(other);
+  std::vector<Packet> joined(first.begin(), first.end() - 1);  // without its end
+  joined.insert(joined.end(), second.begin(), second.end());
+  const Survived got = DecodeDamaged(Join(joined), 100);
+  EXPECT_EQ(got.frames.size(), kGroup);
+  EXPECT_EQ(got.status.code(), StatusCode::kCorrupt);
+}
+
+TEST(Damage, LimitsAreNone) {
+  const Bytes stream = Encode(BendingClip(kFrames), Grouped()).bytes;
+  DecoderSettings settings;
+  settings.skip_damage = true;
+  settings.limits.frames_per_group = kGroup - 1;
+  EXPECT_EQ(Decode(stream, stream.size(), settings).status.code(), StatusCode::kLimit);
+}
+
+TEST(Damage, TheEndIsToldInTheEnd) {
+  EncoderSettings settings = Grouped();
+  settings.index = false;
+  Bytes stream = Encode(BendingClip(kFrames), settings).bytes;
+  stream.resize(GroupBytes(stream).back().second - 10);
+  EXPECT_EQ(DecodeDamaged(stream, stream.size()).status.code(), StatusCode::kCorrupt);
+}
+
 TEST(Damage, ManyWoundsAreHarmless) {
   EncoderSettings settings = Grouped();
   settings.repeat_start = 3;

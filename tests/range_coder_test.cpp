@@ -193,6 +193,33 @@ TEST(RangeCoder, NoticesMissingBytes) {
   }
 }
 
+// Of a code that is cut off, what is certain is right, and nothing is given up that four more bytes could not change.
+TEST(RangeCoder, KnowsWhatIsCertain) {
+  std::mt19937 random(11);
+  for (int i = 0; i < 50; ++i) {
+    const auto items = RandomItems(random, 300);
+    const Bytes code = Encode(items);
+    std::size_t before = 0;
+    for (std::size_t size = 0; size <= code.size(); ++size) {
+      const Bytes prefix(code.begin(), code.begin() + static_cast<std::ptrdiff_t>(size));
+      RangeDecoder coder(prefix);
+      std::vector<BitModel> models(kModels);
+      std::size_t certain = 0;
+      for (std::size_t n = 0; n < items.size(); ++n) {
+        std::uint32_t value = 0;
+        bool bit = false;
+        items[n].width == 0 ? coder.Bit(models[items[n].model], bit) : coder.Raw(value, items[n].width);
+        if (!coder.IsCertain()) break;
+        ASSERT_EQ(items[n].width == 0 ? bit : value, items[n].value) << "item " << n << " of " << size << " bytes";
+        ++certain;
+      }
+      EXPECT_GE(certain, before);
+      before = certain;
+    }
+    EXPECT_GE(before, items.size() - 40);  // 32 bits of the likeliest bins and more
+  }
+}
+
 // Whatever else the last bytes are, fewer or more: they say something else, or are refused.
 TEST(RangeCoder, HasOneSpelling) {
   std::mt19937 random(11);

@@ -241,7 +241,7 @@ TEST(Robustness, LimitsAreRespected) {
   EXPECT_EQ(with(&Limits::basis_values, std::uint64_t{399}), StatusCode::kLimit);
   EXPECT_EQ(with(&Limits::factor_values, std::uint64_t{400}), StatusCode::kOk);
   EXPECT_EQ(with(&Limits::factor_values, std::uint64_t{40}), StatusCode::kLimit);
-  EXPECT_EQ(with(&Limits::memory, std::uint64_t{50000}), StatusCode::kOk);
+  EXPECT_EQ(with(&Limits::memory, std::uint64_t{100000}), StatusCode::kOk);
   EXPECT_EQ(with(&Limits::memory, std::uint64_t{20000}), StatusCode::kLimit);
   EXPECT_EQ(with(&Limits::basis_work, 1e6), StatusCode::kOk);
   EXPECT_EQ(with(&Limits::basis_work, 1e4), StatusCode::kLimit);

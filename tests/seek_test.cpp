@@ -242,6 +242,32 @@ TEST(Seek, ThreadsMakeNoDifference) {
   }
 }
 
+TEST(Seek, ThreadsPlayAgain) {
+  for (const Bytes& stream : Streams()) {
+    const Decoded whole = Decode(stream);
+    DecoderSettings settings;
+    settings.threads = 3;
+    Decoder decoder(settings);
+    ReadOn(decoder, stream, 0);
+    for (const std::uint32_t frame : {0u, 21u, 22u, 21u, 3u, 3u}) {
+      std::uint64_t byte = 0;
+      ASSERT_TRUE(decoder.Seek(frame, byte).ok());
+      const std::vector<DecodedFrame> frames = ReadOn(decoder, stream, byte, frame == 3 ? 1 : 1000);
+      ASSERT_EQ(frames.size(), frame == 3 ? 1 : kFrames - frame);
+      for (const DecodedFrame& f : frames) ExpectNear(f.positions, whole.frames[f.index].positions);
+    }
+  }
+}
+
+TEST(Seek, NoStepIsNone) {
+  DecoderSettings settings;
+  settings.frame_step = 0;
+  Decoder decoder(settings);
+  const Bytes stream = Encode(BendingClip(1), Grouped()).bytes;
+  std::span<const std::uint8_t> rest(stream);
+  EXPECT_EQ(decoder.Send(rest).code(), StatusCode::kInvalidArgument);
+}
+
 // The shape half way between two frames is near their mean where little happens, and keeps its size where it turns.
 TEST(Interpolate, IsBetweenItsFrames) {
   const Bytes stream = Encode(BendingClip(kFrames), Grouped()).bytes;
@@ -265,12 +291,14 @@ TEST(Interpolate, IsBetweenItsFrames) {
     const double miss = (ToMatrix(frame.positions) - (1 - t) * ToMatrix(a) - t * ToMatrix(b)).norm();
     EXPECT_LE(miss, t == 0 ? 1e-5 : 0.3 * step + 0.02) << time;
   }
-  // After the last frame is the last frame; what is gone is gone, until it is sought.
-  while (decoder.Interpolate(100, frame).code() == StatusCode::kNeedMoreData && !rest.empty()) {
-    ASSERT_TRUE(decoder.Send(rest).ok());
-  }
-  EXPECT_TRUE(rest.empty());
+  // The last frame is held for its time; what is gone is gone, until it is sought.
+  EXPECT_EQ(decoder.Interpolate(kFrames, frame).code(), StatusCode::kNeedMoreData);
+  while (!rest.empty()) ASSERT_TRUE(decoder.Send(rest).ok());
+  EXPECT_EQ(decoder.frames(), kFrames);
+  EXPECT_TRUE(decoder.Interpolate(kFrames - 0.25, frame).ok());
   EXPECT_EQ(frame.index, kFrames - 1);
+  EXPECT_EQ(frame.positions, whole.frames.back().positions);
+  EXPECT_EQ(decoder.Interpolate(kFrames, frame).code(), StatusCode::kInvalidArgument);
   EXPECT_EQ(decoder.Interpolate(3.5, frame).code(), StatusCode::kInvalidArgument);
   std::uint64_t byte = 0;
   ASSERT_TRUE(decoder.Seek(3, byte).ok());
@@ -307,6 +335,49 @@ TEST(Interpolate, KeepsTheSizeOfWhatTurns) {
   }
   const double size = RmsRadius(whole.frames[1].positions);
   EXPECT_NEAR(RmsRadius(frame.positions), size, 0.01 * size);  // the mean of positions would be 10 % smaller
+}
+
+// Rotations are unwrapped within a group: from one to the next, their vectors may be turns apart.
+TEST(Interpolate, TurnsTheShortWayBetweenGroups) {
+  constexpr double kTurn = 0.7;
+  const Clip still = BendingClip(1);
+  Clip clip{still.mesh, {}};
+  for (std::uint32_t t = 0; t < kFrames; ++t) {
+    clip.frames.push_back(Moved(still.frames[0], AxisAngle({1, 2, 3}, kTurn * t), Eigen::Vector3d(0.1 * t, 0, 0)));
+  }
+  const Bytes stream = Encode(clip, Grouped()).bytes;
+  const Decoded whole = Decode(stream);
+  Decoder decoder;
+  std::span<const std::uint8_t> rest(stream);
+  for (double time = 0.5; time < kFrames - 1; time += 1) {
+    DecodedFrame frame;
+    while (decoder.Interpolate(time, frame).code() == StatusCode::kNeedMoreData) {
+      ASSERT_TRUE(decoder.Send(rest).ok());
+    }
+    const auto at = static_cast<std::size_t>(time);
+    const double before = (ToMatrix(frame.positions) - ToMatrix(whole.frames[at].positions)).norm(),
+                 after = (ToMatrix(frame.positions) - ToMatrix(whole.frames[at + 1].positions)).norm(),
+                 step = (ToMatrix(whole.frames[at + 1].positions) - ToMatrix(whole.frames[at].positions)).norm();
+    EXPECT_NEAR(before, step / 2, 0.05 * step) << time;
+    EXPECT_NEAR(after, step / 2, 0.05 * step) << time;
+  }
+}
+
+TEST(Interpolate, FramesBeforeCountAsReceived) {
+  const Bytes stream = Encode(BendingClip(kFrames), Grouped()).bytes;
+  Decoder decoder;
+  DecodedFrame frame;
+  std::span<const std::uint8_t> rest(stream);
+  while (decoder.Interpolate(2.5, frame).code() == StatusCode::kNeedMoreData) ASSERT_TRUE(decoder.Send(rest).ok());
+  ASSERT_TRUE(decoder.Receive(frame).ok());
+  EXPECT_EQ(frame.index, 3u);
+  std::uint64_t byte = 0;
+  ASSERT_TRUE(decoder.Seek(0, byte).ok());
+  ASSERT_TRUE(decoder.Interpolate(1, frame).ok());  // of the group that it still has
+  rest = std::span(stream).subspan(byte);
+  ASSERT_TRUE(decoder.Send(rest).ok());
+  ASSERT_TRUE(decoder.Receive(frame).ok());
+  EXPECT_EQ(frame.index, 1u);
 }
 
 TEST(Interpolate, NotAgainstTheFrameBefore) {

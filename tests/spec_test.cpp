@@ -113,7 +113,7 @@ TEST(Spec, Index) {
   EXPECT_EQ(Hex(packet), Equation(lines.at(1)).second);
   StreamIndex read;
   std::size_t needed = 0;
-  ASSERT_TRUE(ReadIndex(packet, read, needed).ok());
+  ASSERT_TRUE(ReadIndex(packet, {}, read, needed).ok());
   EXPECT_EQ(read, *end.index);
   EXPECT_EQ(needed, packet.size());
 }
@@ -302,11 +302,22 @@ TEST(Spec, Patches) {
   EXPECT_EQ(line.str(), Example("patches").at(2));
 }
 
+TEST(Spec, SaysItsVersion) {
+  std::ifstream file(SAC_SPEC);
+  const std::string text{std::istreambuf_iterator<char>(file), {}}, major = std::to_string(kVersionMajor),
+                                                                    minor = std::to_string(kVersionMinor);
+  EXPECT_NE(text.find("\nVersion " + major + "." + minor + ".\n"), std::string::npos);
+  EXPECT_NE(text.find("\n| `version_major` | u8 | " + major + " |"), std::string::npos);
+  EXPECT_NE(text.find("\n| `version_minor` | u8 | " + minor + " |"), std::string::npos);
+}
+
 TEST(Spec, ReducedFunctions) {
   std::vector<std::array<std::uint32_t, 3>> grid;
   for (std::uint32_t v = 0; v < 10; ++v) grid.push_back({v * v, 0, 0});
   const auto wanted = Row<std::size_t>("reduced", "samples");
-  const Eigen::MatrixXd functions = RadialFunctions(grid, static_cast<std::uint32_t>(wanted.size()));
+  Eigen::SparseMatrix<double> sparse;
+  ASSERT_TRUE(RadialFunctions(grid, static_cast<std::uint32_t>(wanted.size()), 1e9, sparse));
+  const Eigen::MatrixXd functions = sparse;
   const auto row = Row<double>("reduced", "functions");
   for (std::size_t i = 0; i < row.size(); ++i) EXPECT_NEAR(functions(7, static_cast<Eigen::Index>(i)), row[i], 5.1e-7);
 }

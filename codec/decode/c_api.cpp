@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <exception>
 #include <string>
@@ -8,7 +9,7 @@
 
 struct sac_decoder {
   sac::Decoder decoder;
-  std::string message;
+  std::string message;  // of the last call that failed
 };
 
 namespace {
@@ -45,9 +46,12 @@ sac_status Run(sac_decoder* decoder, Step&& step) {
     if (code != SAC_OK && code != SAC_NEED_MORE_DATA) decoder->message = status.message();
     return code;
   } catch (const std::exception&) {
+    decoder->message.clear();
     return SAC_LIMIT;
   }
 }
+
+Status Missing() { return Status::InvalidArgument("a null pointer"); }
 
 // Calls visit(member, limit) for each limit of the settings and its twin among `limits`.
 template <class Settings, class Limits, class Visit>
@@ -89,6 +93,9 @@ void Describe(const sac::FrameInfo& from, sac_frame_info* to) {
   std::copy(from.box.high.begin(), from.box.high.end(), to->box_high);
 }
 
+// What sac_settings had in its first version.
+constexpr std::size_t kFirstSettings = offsetof(sac_settings, threads) + sizeof(sac_settings::threads);
+
 // Arrays of arrays are what C sees as one array.
 template <class Out, class In>
 const Out* Flat(const std::vector<In>& values) {
@@ -115,23 +122,31 @@ void sac_settings_init(sac_settings* settings) {
   settings->threads = defaults.threads;
 }
 
-sac_decoder* sac_decoder_open(const sac_settings* settings) {
+sac_status sac_decoder_open(sac_decoder** decoder, const sac_settings* settings) {
+  if (decoder == nullptr) return SAC_INVALID_ARGUMENT;
+  *decoder = nullptr;
   sac_settings s;
   sac_settings_init(&s);
   if (settings != nullptr) {
-    if (settings->struct_size > sizeof(s)) return nullptr;  // of a newer library
-    std::memcpy(&s, settings, settings->struct_size);       // an older one has fewer members
+    if (settings->struct_size < kFirstSettings) return SAC_INVALID_ARGUMENT;
+    if (settings->struct_size > sizeof(s)) return SAC_UNSUPPORTED;
+    std::memcpy(&s, settings, settings->struct_size);  // an older one has fewer members
   }
-  if (s.frame_step == 0 || s.threads > 1024) return nullptr;
   sac::DecoderSettings to;
-  VisitLimits(s, to.limits, [](const auto& member, auto& limit) { limit = member; });
+  bool good = s.frame_step > 0 && s.threads <= 1024;
+  VisitLimits(s, to.limits, [&](const auto& member, auto& limit) {
+    good = good && member >= 0;  // and a number
+    limit = member;
+  });
+  if (!good) return SAC_INVALID_ARGUMENT;
   to.skip_damage = s.skip_damage != 0;
   to.frame_step = s.frame_step;
   to.threads = s.threads;
   try {
-    return new sac_decoder{sac::Decoder(to), {}};
+    *decoder = new sac_decoder{sac::Decoder(to), {}};
+    return SAC_OK;
   } catch (const std::exception&) {
-    return nullptr;
+    return SAC_LIMIT;
   }
 }
 
@@ -146,8 +161,8 @@ void sac_decoder_reset(sac_decoder* decoder) {
 }
 
 sac_status sac_decoder_send(sac_decoder* decoder, const uint8_t** data, size_t* size) {
-  if (data == nullptr || size == nullptr || (*data == nullptr && *size > 0)) return SAC_INVALID_ARGUMENT;
   return Run(decoder, [&](sac::Decoder& d) {
+    if (data == nullptr || size == nullptr || (*data == nullptr && *size > 0)) return Missing();
     std::span<const std::uint8_t> bytes(*data, *size);
     Status status = d.Send(bytes);
     *data = bytes.data();
@@ -172,8 +187,8 @@ sac_status sac_decoder_finish(sac_decoder* decoder) {
 }
 
 sac_status sac_decoder_mesh(sac_decoder* decoder, sac_mesh* mesh) {
-  if (mesh == nullptr) return SAC_INVALID_ARGUMENT;
   return Run(decoder, [&](sac::Decoder& d) {
+    if (mesh == nullptr) return Missing();
     if (d.mesh() == nullptr) return Status::NeedMoreData();
     const sac::Mesh& m = *d.mesh();
     mesh->vertices = static_cast<std::uint32_t>(m.positions.size());
@@ -192,18 +207,17 @@ sac_status sac_decoder_mesh(sac_decoder* decoder, sac_mesh* mesh) {
 }
 
 sac_status sac_decoder_seek(sac_decoder* decoder, uint32_t frame, uint64_t* byte) {
-  if (byte == nullptr) return SAC_INVALID_ARGUMENT;
-  return Run(decoder, [&](sac::Decoder& d) { return d.Seek(frame, *byte); });
+  return Run(decoder, [&](sac::Decoder& d) { return byte == nullptr ? Missing() : d.Seek(frame, *byte); });
 }
 
 sac_status sac_decoder_seek_time(sac_decoder* decoder, double seconds, uint64_t* byte) {
-  if (byte == nullptr) return SAC_INVALID_ARGUMENT;
-  return Run(decoder, [&](sac::Decoder& d) { return d.SeekTime(seconds, *byte); });
+  return Run(decoder, [&](sac::Decoder& d) { return byte == nullptr ? Missing() : d.SeekTime(seconds, *byte); });
 }
 
 sac_status sac_decoder_add_index(sac_decoder* decoder, const uint8_t* tail, size_t size, size_t* needed) {
-  if (needed == nullptr || (tail == nullptr && size > 0)) return SAC_INVALID_ARGUMENT;
-  return Run(decoder, [&](sac::Decoder& d) { return d.AddIndex({tail, size}, *needed); });
+  return Run(decoder, [&](sac::Decoder& d) {
+    return needed == nullptr || (tail == nullptr && size > 0) ? Missing() : d.AddIndex({tail, size}, *needed);
+  });
 }
 
 sac_status sac_decoder_interpolate(sac_decoder* decoder, double frame_time, const sac_frame_buffers* buffers,
@@ -214,6 +228,15 @@ sac_status sac_decoder_interpolate(sac_decoder* decoder, double frame_time, cons
     SAC_RETURN_IF_ERROR(ToBuffers(buffers, to));
     SAC_RETURN_IF_ERROR(d.Interpolate(frame_time, to, described));
     Describe(described, info);
+    return Status::Ok();
+  });
+}
+
+sac_status sac_decoder_frames(sac_decoder* decoder, uint32_t* frames) {
+  return Run(decoder, [&](sac::Decoder& d) {
+    if (frames == nullptr) return Missing();
+    if (!d.frames()) return Status::NeedMoreData();
+    *frames = *d.frames();
     return Status::Ok();
   });
 }

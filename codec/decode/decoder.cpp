@@ -26,7 +26,9 @@ namespace sac {
 
 class Decoder::Impl {
  public:
-  explicit Impl(const DecoderSettings& s) : settings(s), packets_(s.limits, s.skip_damage) {}
+  explicit Impl(const DecoderSettings& s) : settings(s), packets_(s.limits, s.skip_damage) {
+    if (s.frame_step == 0) error_ = Status::InvalidArgument("a frame_step of 0");
+  }
 
   Status Send(std::span<const std::uint8_t>& bytes);
   // Into `positions`, and from there into `buffers`, unless null, which are checked before anything is given out.
@@ -41,7 +43,7 @@ class Decoder::Impl {
   Status Contain(Call&& call) {
     try {
       return call();
-    } catch (const std::exception&) {
+    } catch (const std::exception&) {                // std::bad_alloc or std::length_error
       return Latch(Status::Limit("out of memory"));  // short enough for a string that allocates nothing
     }
   }
@@ -50,6 +52,7 @@ class Decoder::Impl {
   std::optional<SequenceHeader> header;
   std::optional<Mesh> mesh;
   std::vector<std::uint32_t> order;
+  std::optional<std::uint32_t> total_frames;
   LostFrames lost;
 
  private:
@@ -68,12 +71,20 @@ class Decoder::Impl {
   Status TakeEnd(std::span<const std::uint8_t> payload, std::uint64_t begin);
   // The frames of a group that is cut off by the end of the bytes.
   void TakeCutGroup(std::span<const std::uint8_t> packet);
+  // Whether to pass over what gave `status`. What exceeds a limit is no damage.
+  bool IsDamage(const Status& status) const {
+    return settings.skip_damage && !status.ok() && status.code() != StatusCode::kLimit;
+  }
   // Whether the stream goes on with `frame`: notes what is lost before.
   Status ContinueAt(std::uint32_t frame);
 
   bool FrameWaits() const { return source_ && next_out_ < source_->frames().end(); }
   Status Check(const FrameBuffers* buffers) const {
     return buffers ? CheckBuffers(*buffers, shape_.vertices()) : Status::Ok();
+  }
+  Status BeyondTheEnd(double time) const {
+    return Status::InvalidArgument("frame " + std::to_string(static_cast<std::uint32_t>(time)) + " of a clip of " +
+                                   std::to_string(*total_frames) + " frames");
   }
   void GiveOut(std::uint32_t frame, double time, const Positions& positions, FrameInfo& info,
                const FrameBuffers* buffers) const;
@@ -91,6 +102,7 @@ class Decoder::Impl {
   std::uint32_t i_frame_crc_ = 0;
   std::size_t i_frame_size_ = 0;
   bool after_header_ = false;
+  bool foreign_ = false;  // with skip_damage: another stream has begun
 
   Shape shape_;  // the members below refer to it
   std::optional<GroupParser> parser_;
@@ -105,11 +117,10 @@ class Decoder::Impl {
   };
   std::optional<HeldGroup> held_;
 
-  std::optional<std::uint64_t> next_frame_ = 0;  // that the stream has; none after Seek()
+  std::optional<std::uint64_t> next_frame_ = 0;  // that the stream has; none where it is entered
   std::uint64_t next_out_ = 0;                   // of those in source_
   std::uint64_t wanted_ = 0;                     // frames before are not given out
   SeekTable places_;
-  std::optional<std::uint32_t> total_frames_;
 };
 
 Status Decoder::Impl::Send(std::span<const std::uint8_t>& bytes) {
@@ -174,6 +185,7 @@ Status Decoder::Impl::Take(const Packet& packet, std::uint64_t begin) {
 Status Decoder::Impl::TakeHeader(std::span<const std::uint8_t> payload) {
   if (header) {
     after_header_ = std::ranges::equal(payload, header_bytes_);
+    foreign_ = !after_header_;
     if (after_header_ || settings.skip_damage) return Status::Ok();
     return Status::Corrupt("a second sequence header that is not the first");
   }
@@ -189,14 +201,16 @@ Status Decoder::Impl::TakeIFrame(std::span<const std::uint8_t> payload) {
   const std::uint32_t crc = Crc32(payload);
   if (!header) return settings.skip_damage ? Status::Ok() : Status::Corrupt("an I-frame before the sequence header");
   if (mesh) {
-    if ((crc == i_frame_crc_ && payload.size() == i_frame_size_) || settings.skip_damage) return Status::Ok();
+    foreign_ = foreign_ || crc != i_frame_crc_ || payload.size() != i_frame_size_;
+    if (!foreign_ || settings.skip_damage) return Status::Ok();
     return Status::Corrupt("a second I-frame that is not the first");
   }
   SAC_RETURN_IF_ERROR(DecodeIFrame(payload));
   i_frame_crc_ = crc;
   i_frame_size_ = payload.size();
+  const unsigned threads = header->references_previous() ? 1 : std::max(1u, settings.threads);
+  source_.emplace(shape_, *header, UseThreads(threads, settings.limits, shape_));
   parser_.emplace(*header, shape_, settings.limits);
-  source_.emplace(shape_, *header, settings.threads);
   places_.Start(packets_.position());
   return Status::Ok();
 }
@@ -206,7 +220,6 @@ Status Decoder::Impl::DecodeIFrame(std::span<const std::uint8_t> payload) {
   SAC_RETURN_IF_ERROR(ParseIFrame(payload, *header, syntax));
   DracoMesh draco;
   SAC_RETURN_IF_ERROR(DecodeDraco(syntax.mesh, *header, draco));
-  if (!draco.ids.empty()) return Status::Corrupt("I-frame: an unknown attribute");
   DecodedIFrame decoded;
   SAC_RETURN_IF_ERROR(AssembleIFrame(syntax, *header, std::move(draco), decoded));
   Mesh out;
@@ -244,6 +257,7 @@ Status Decoder::Impl::ContinueAt(std::uint32_t frame) {
 
 Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload, std::uint64_t begin) {
   if (!mesh) return settings.skip_damage ? Status::Ok() : Status::Corrupt("a group before the I-frame");
+  if (foreign_) return Status::Ok();
   GroupSyntax group;
   std::span<const std::uint8_t> code;
   CodedFrames frames;
@@ -260,17 +274,19 @@ Status Decoder::Impl::TakeGroup(std::span<const std::uint8_t> payload, std::uint
   next_frame_ = end;
   if (end <= wanted_) return Status::Ok();
   const HeldGroup sent{begin, payload.size(), Crc32(payload)};
-  if (held_ != sent) {  // else it has been sought again
+  if (held_ == sent) {  // it has been sought again
+    status = source_->Restart();
+  } else {
     held_.reset();
-    status = parser_->Parse(group, code, frames);
+    status = parser_->Parse(group, code, false, frames);
     if (status.ok()) status = source_->Take(std::move(frames), true);
-    if (!status.ok() && settings.skip_damage) {
-      lost.Add(group.first_frame, end);
-      return Status::Ok();
-    }
-    SAC_RETURN_IF_ERROR(status);
-    held_ = sent;
   }
+  if (IsDamage(status)) {
+    lost.Add(group.first_frame, end);
+    return Status::Ok();
+  }
+  SAC_RETURN_IF_ERROR(status);
+  held_ = sent;
   next_out_ = group.first_frame;
   return Status::Ok();
 }
@@ -285,15 +301,16 @@ Status Decoder::Impl::TakeFrame(std::span<const std::uint8_t> payload) {
     held_.reset();
     status = source_->Take(std::move(frames), std::exchange(group_begins_, false));
   }
-  if (status.ok() || !settings.skip_damage) return status;
+  if (!IsDamage(status)) return status;
   parser_->Close();
   return Status::Ok();
 }
 
 Status Decoder::Impl::TakeEnd(std::span<const std::uint8_t> payload, std::uint64_t begin) {
   if (!mesh) return settings.skip_damage ? Status::Ok() : Status::Corrupt("the end before the I-frame");
+  if (foreign_) return Status::Ok();
   EndSyntax end;
-  Status status = ParseEnd(payload, end);
+  Status status = ParseEnd(payload, settings.limits, end);
   if (status.ok() && next_frame_ && *next_frame_ != end.frames) {
     if (settings.skip_damage && end.frames > *next_frame_) {
       lost.Add(static_cast<std::uint32_t>(*next_frame_), end.frames);
@@ -306,7 +323,7 @@ Status Decoder::Impl::TakeEnd(std::span<const std::uint8_t> payload, std::uint64
     status = Status::Corrupt("end: the index is not the stream's");
   }
   if (!status.ok()) return settings.skip_damage ? Status::Ok() : status;
-  total_frames_ = end.frames;
+  total_frames = end.frames;
   ended_ = true;
   return Status::Ok();
 }
@@ -324,7 +341,7 @@ Status Decoder::Impl::Receive(Positions& positions, FrameInfo& info, const Frame
     const bool shown = frame >= wanted_ && frame % settings.frame_step == 0;
     if (!shown && !header->references_previous()) continue;
     if (const Status status = source_->Reconstruct(frame, settings.frame_step, positions); !status.ok()) {
-      if (!settings.skip_damage) return Latch(status);
+      if (!IsDamage(status)) return Latch(status);
       lost.Add(frame, std::uint64_t{frame} + 1);
       continue;
     }
@@ -350,17 +367,21 @@ Status Decoder::Impl::Interpolate(double time, Positions& positions, FrameInfo& 
   SAC_RETURN_IF_ERROR(Check(buffers));
   if (header->references_previous())
     return Status::Unsupported("frames measured against the frame before have none between");
-  if (total_frames_.value_or(0) > 0) time = std::min(time, *total_frames_ - 1.0);
+  if (total_frames && time >= *total_frames) return BeyondTheEnd(time);
+  if (total_frames) time = std::min(time, *total_frames - 1.0);
   const auto frame = static_cast<std::uint32_t>(time), after = static_cast<std::uint32_t>(std::ceil(time));
   while (!source_->Holds(frame) || !source_->Holds(after)) {
     if (next_frame_ && after < *next_frame_) {
       return Status::InvalidArgument("frame " + std::to_string(frame) + " or the next is gone");
     }
     next_out_ = source_->frames().end();
-    if (!CanAdvance()) return Status::NeedMoreData();
+    if (!CanAdvance()) {
+      if (!ended_ && !finished_) return Status::NeedMoreData();
+      return Status::InvalidArgument("frame " + std::to_string(frame) + " or the next is not there");
+    }
     SAC_RETURN_IF_ERROR(AdvanceAlone());
   }
-  next_out_ = std::max<std::uint64_t>(next_out_, frame);
+  wanted_ = std::max<std::uint64_t>(wanted_, after);
   SAC_RETURN_IF_ERROR(source_->Interpolate(time, positions));
   GiveOut(frame, time, positions, info, buffers);
   return Status::Ok();
@@ -368,16 +389,15 @@ Status Decoder::Impl::Interpolate(double time, Positions& positions, FrameInfo& 
 
 Status Decoder::Impl::Seek(std::uint32_t frame, std::uint64_t& byte) {
   if (!source_) return Status::NeedMoreData();
-  if (total_frames_ && frame >= *total_frames_) {
-    return Status::InvalidArgument("frame " + std::to_string(frame) + " of a clip of " +
-                                   std::to_string(*total_frames_) + " frames");
-  }
-  byte = places_.Find(frame);
+  if (total_frames && frame >= *total_frames) return BeyondTheEnd(frame);
+  const SeekTable::Place place = places_.Find(frame);
+  byte = place.byte;
   packets_.Restart(byte);
   error_.reset();
   ended_ = finished_ = after_header_ = false;
   parser_->Close();
-  next_frame_.reset();
+  next_frame_ = place.first_frame;
+  foreign_ = false;
   next_out_ = source_->frames().end();  // none waits
   wanted_ = frame;
   return Status::Ok();
@@ -385,10 +405,10 @@ Status Decoder::Impl::Seek(std::uint32_t frame, std::uint64_t& byte) {
 
 Status Decoder::Impl::AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed) {
   StreamIndex index;
-  SAC_RETURN_IF_ERROR(ReadIndex(tail, index, needed));
+  SAC_RETURN_IF_ERROR(ReadIndex(tail, settings.limits, index, needed));
   places_.Take(index);
-  total_frames_ = 0;
-  for (const StreamIndex::Group& group : index.groups) *total_frames_ += group.frames;
+  total_frames = 0;
+  for (const StreamIndex::Group& group : index.groups) *total_frames += group.frames;
   return Status::Ok();
 }
 
@@ -396,13 +416,16 @@ void Decoder::Impl::TakeCutGroup(std::span<const std::uint8_t> packet) {
   ByteReader reader(packet);
   const std::uint32_t tag = reader.Varint();
   if (!reader.ok() || static_cast<PacketType>(tag & 3) != PacketType::kGroup) return;
+  auto payload = packet.subspan(reader.position());
+  payload = payload.first(std::min<std::size_t>(payload.size(), tag / 4));  // the check may have begun
   GroupSyntax group;
   std::span<const std::uint8_t> code;
   CodedFrames frames;
-  if (!ParseGroup(packet.subspan(reader.position()), group, code).ok() || group.open()) return;
-  if (!ContinueAt(group.first_frame).ok() || !parser_->ParseCut(group, code, frames).ok()) return;
-  while (!frames.frames.back().whole) frames.frames.pop_back();
+  if (!ParseGroup(payload, group, code).ok() || group.open()) return;
+  if (foreign_ || !ContinueAt(group.first_frame).ok()) return;
   next_frame_ = std::uint64_t{group.first_frame} + group.frames;
+  if (!parser_->Parse(group, code, true, frames).ok()) return lost.Add(group.first_frame, *next_frame_);
+  while (!frames.frames.back().whole) frames.frames.pop_back();
   held_.reset();
   lost.Add(frames.end(), *next_frame_);
   if (source_->Take(std::move(frames), true).ok()) next_out_ = group.first_frame;
@@ -414,7 +437,7 @@ Status Decoder::Impl::Finish() {
   if (!settings.skip_damage) return ended_ && !FrameWaits() ? Status::Ok() : Latch(truncated());
   finished_ = true;
   while (!FrameWaits() && CanAdvance()) SAC_RETURN_IF_ERROR(AdvanceAlone());
-  return ended_ || FrameWaits() ? Status::Ok() : truncated();
+  return ended_ || (FrameWaits() && packets_.HasMore()) ? Status::Ok() : truncated();
 }
 
 Decoder::Decoder(const DecoderSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}
@@ -444,6 +467,7 @@ void Decoder::Reset() { impl_ = std::make_unique<Impl>(impl_->settings); }
 const SequenceHeader* Decoder::header() const { return impl_->header ? &*impl_->header : nullptr; }
 const Mesh* Decoder::mesh() const { return impl_->mesh ? &*impl_->mesh : nullptr; }
 const std::vector<std::uint32_t>& Decoder::order() const { return impl_->order; }
+std::optional<std::uint32_t> Decoder::frames() const { return impl_->total_frames; }
 const std::vector<FrameRange>& Decoder::lost_frames() const { return impl_->lost.ranges(); }
 
 Status Decoder::Receive(const FrameBuffers& buffers, FrameInfo& info) {
@@ -459,7 +483,8 @@ Status Decoder::Interpolate(double time, const FrameBuffers& buffers, FrameInfo&
 Status Decoder::SeekTime(double seconds, std::uint64_t& byte) {
   if (!header()) return Status::NeedMoreData();
   if (header()->frame_rate_numerator == 0) return Status::InvalidArgument("the stream has no frame rate");
-  const double frame = std::floor(seconds * header()->frames_per_second() + 1e-9);
+  const double time = seconds * header()->frames_per_second();
+  const double frame = std::floor(time + 1e-9 + 4e-16 * time);  // of frames' own times, too
   if (!(frame >= 0 && frame <= 0xffffffffu)) return Status::InvalidArgument("a time that is no frame's");
   return Seek(static_cast<std::uint32_t>(frame), byte);
 }

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -21,7 +22,7 @@ struct DecoderSettings {
   // lost_frames() tells. Without it any error is final.
   bool skip_damage = false;
   // Receive() gives the frames whose number is a multiple of this, at a fraction of the work.
-  std::uint32_t frame_step = 1;
+  std::uint32_t frame_step = 1;  // not 0
   // Threads that reconstruct frames of a group; they live as long as a call. 1: the caller's alone.
   unsigned threads = 1;
 };
@@ -50,7 +51,11 @@ struct DecodedFrame : FrameInfo {
 //     }
 //   }
 //   status = decoder.Finish();
-//   while (decoder.Receive(frame).ok()) Show(decoder.mesh(), frame);    // only with skip_damage
+//
+// With skip_damage more may come of the end:
+//
+//   while (decoder.Receive(frame).ok()) Show(decoder.mesh(), frame);
+//   status = decoder.Finish();
 //
 // Memory holds the mesh, its basis, one packet and a group's coefficients, whatever the length of the clip; only the
 // places of its groups add 16 bytes each. A decoder is used by one thread at a time; decoders share nothing.
@@ -72,26 +77,31 @@ class Decoder {
   Status Receive(const FrameBuffers& buffers, FrameInfo& info);
 
   // Declares the end of the bytes: kCorrupt when the stream is not complete. With skip_damage, more frames may be ready
-  // to be received afterwards: those of a packet whose size was damaged, or of a group that is cut off.
+  // to be received afterwards: those of a packet whose size was damaged, or of a group that is cut off. Called again
+  // after the last of them, it tells whether the stream was complete.
   Status Finish();
 
   // Goes to `frame`, which the next Receive() gives: it sets `byte`, and the next bytes sent must be those of the
   // stream from there on. Without an index this is the last group that is known to begin before, and groups are passed
-  // over from there, without decoding them. A clip is played again by Seek(0). kNeedMoreData before the I-frame has
-  // been sent; kInvalidArgument when the clip is known to end before. An error of the stream's damage ends here.
+  // over from there, without decoding them. A clip is played again by Seek(0). With a frame_step, Receive() gives the
+  // next of its multiples. `byte` counts from the first byte that was sent, or that an index counts from.
+  // kNeedMoreData before the I-frame has been sent; kInvalidArgument when the clip is known to end before. An error of
+  // the stream's damage ends here.
   Status Seek(std::uint32_t frame, std::uint64_t& byte);
   // Likewise to the frame that is shown at so many seconds. kInvalidArgument when the stream has no frame rate.
   Status SeekTime(double seconds, std::uint64_t& byte);
 
   // Makes Seek() know where all groups begin, from the last bytes of the stream. kNeedMoreData when there are too few:
-  // `needed` says how many it takes, kStreamTail (8) at first. kInvalidArgument when the stream has no index; so it is,
+  // `needed` says how many it takes, 8 at first. kInvalidArgument when the stream has no index; so it is,
   // too, when `needed` comes to be more than the stream has.
   Status AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed);
 
   // The shape at a time between frames, in frames from the clip's begin: coefficients are averaged, not positions, so
-  // that what turns keeps its size. Frames before `time` count as received; go on with later times, or Seek().
-  // kNeedMoreData when the frame after `time` has not been sent; kInvalidArgument when the one before is gone or lost;
-  // kUnsupported when frames are measured against the frame before.
+  // that what turns keeps its size. The last frame is held for its time. A cut is passed through like any motion.
+  // Frames before `time` count as received; go on with later times, or Seek(). kNeedMoreData when the frame after
+  // `time` has not been sent; kInvalidArgument when the one before is gone, or the clip is known to end before `time`;
+  // kCorrupt, and decoding may go on, when one of them is lost; kUnsupported when frames are measured against the frame
+  // before.
   Status Interpolate(double time, DecodedFrame& frame);
   Status Interpolate(double time, const FrameBuffers& buffers, FrameInfo& info);
 
@@ -103,6 +113,8 @@ class Decoder {
   const Mesh* mesh() const;
   // Per vertex its index in the input; empty when the stream does not keep the order.
   const std::vector<std::uint32_t>& order() const;
+  // How many frames the clip has; nothing before the end or AddIndex() has told.
+  std::optional<std::uint32_t> frames() const;
   // The frames that damage has cost so far, ascending, with skip_damage.
   const std::vector<FrameRange>& lost_frames() const;
 

@@ -13,7 +13,7 @@ namespace sac {
 namespace {
 
 // The fields before Draco's own data, whose sizes Draco trusts (Draco bitstream specification, sections 4 and 6).
-Status CheckDracoHeader(std::span<const std::uint8_t> bytes, const SequenceHeader& header) {
+Status CheckDracoHeader(std::span<const std::uint8_t> bytes, const SequenceHeader& header, bool with_ids) {
   ByteReader in(bytes);
   const auto name = in.Bytes(5);
   if (!in.ok() || std::string(name.begin(), name.end()) != "DRACO") return Status::Corrupt("I-frame: not a Draco mesh");
@@ -23,9 +23,11 @@ Status CheckDracoHeader(std::span<const std::uint8_t> bytes, const SequenceHeade
   if (type != 1 || method != 1 || flags != 0) return Status::Corrupt("I-frame: not a plain Draco edgebreaker mesh");
   in.U8();  // traversal
   const std::uint32_t vertices = in.Varint(), triangles = in.Varint();
+  const std::uint8_t attributes = in.U8();  // beside positions; connectivity is allocated for each
   if (!in.ok()) return Status::Corrupt("I-frame: truncated Draco mesh");
   if (triangles > header.triangles) return Status::Corrupt("I-frame: more Draco triangles than the header says");
   if (vertices > 3 * static_cast<std::uint64_t>(triangles)) return Status::Corrupt("I-frame: Draco vertex count");
+  if (attributes > (with_ids ? 4 : 3)) return Status::Corrupt("I-frame: more Draco attributes than there are kinds");
   return Status::Ok();
 }
 
@@ -39,7 +41,7 @@ std::vector<Value> Values(const draco::PointAttribute& attribute, std::size_t co
   return values;
 }
 
-Status Extract(const draco::Mesh& in, DracoMesh& out) {
+Status Extract(const draco::Mesh& in, bool with_ids, DracoMesh& out) {
   const draco::PointAttribute* position = in.GetNamedAttribute(draco::GeometryAttribute::POSITION);
   if (!position || position->data_type() != draco::DT_INT32 || position->num_components() != 3) {
     return Status::Corrupt("I-frame: the Draco mesh has no integer positions");
@@ -87,7 +89,7 @@ Status Extract(const draco::Mesh& in, DracoMesh& out) {
     }
   }
   if (const auto* id = in.GetNamedAttribute(draco::GeometryAttribute::GENERIC)) {
-    if (id->data_type() != draco::DT_UINT32 || id->num_components() != 1 || !per_entry(*id, out.ids)) {
+    if (!with_ids || id->data_type() != draco::DT_UINT32 || id->num_components() != 1 || !per_entry(*id, out.ids)) {
       return Status::Corrupt("I-frame: an unknown attribute");
     }
   }
@@ -96,10 +98,10 @@ Status Extract(const draco::Mesh& in, DracoMesh& out) {
 
 }  // namespace
 
-Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& header, DracoMesh& mesh) {
+Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& header, DracoMesh& mesh, bool with_ids) {
   mesh = {};
   if (bytes.empty()) return Status::Ok();
-  SAC_RETURN_IF_ERROR(CheckDracoHeader(bytes, header));
+  SAC_RETURN_IF_ERROR(CheckDracoHeader(bytes, header, with_ids));
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   GuardedDracoDecoder decoder;
@@ -111,7 +113,7 @@ Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& he
     return Status::Corrupt("I-frame: Draco: a size out of range");
   }
   if (buffer.remaining_size() != 0) return Status::Corrupt("I-frame: bytes after the Draco mesh");
-  return Extract(decoded, mesh);
+  return Extract(decoded, with_ids, mesh);
 }
 
 }  // namespace sac

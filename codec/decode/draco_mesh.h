@@ -25,7 +25,9 @@ struct DracoMesh {
 };
 
 // Decodes a Draco stream; sizes are checked against `header` before Draco allocates. kCorrupt when Draco refuses it or
-// a rule of spec.md 5.1 is broken. Throws std::bad_alloc when there is no memory.
-Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& header, DracoMesh& mesh);
+// a rule of spec.md 5.1 is broken. Throws std::bad_alloc when there is no memory. `with_ids`: an encoder's own, whose
+// entries have ids.
+Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& header, DracoMesh& mesh,
+                   bool with_ids = false);
 
 }  // namespace sac

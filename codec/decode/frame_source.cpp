@@ -5,6 +5,7 @@
 #include <exception>
 #include <limits>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -17,14 +18,9 @@ std::int32_t Between(std::int32_t a, std::int32_t b, double t) {
   return static_cast<std::int32_t>(std::lround(a + t * (static_cast<double>(b) - a)));
 }
 
-FrameCoefficients Between(const FrameCoefficients& a, const FrameCoefficients& b, double t) {
-  FrameCoefficients out = a;
-  for (std::size_t i = 0; i < out.rigid.size(); ++i) out.rigid[i] = Between(a.rigid[i], b.rigid[i], t);
-  for (std::size_t p = 0; p < out.planes.size(); ++p) {
-    for (std::size_t i = 0; i < out.planes[p].size(); ++i) {
-      out.planes[p][i] = Between(a.planes[p][i], b.planes[p][i], t);
-    }
-  }
+PlaneValues Between(const PlaneValues& a, const PlaneValues& b, double t) {
+  PlaneValues out(a.size());
+  for (std::size_t i = 0; i < out.size(); ++i) out[i] = Between(a[i], b[i], t);
   return out;
 }
 
@@ -32,7 +28,7 @@ FrameCoefficients Between(const FrameCoefficients& a, const FrameCoefficients& b
 
 FrameSource::FrameSource(const Shape& shape, const SequenceHeader& header, unsigned threads)
     : shape_(shape), header_(header) {
-  reconstructors_.resize(header.references_previous() ? 1 : std::max(1u, threads));
+  reconstructors_.resize(threads);
 }
 
 Status FrameSource::Take(CodedFrames frames, bool starts_group) {
@@ -40,10 +36,14 @@ Status FrameSource::Take(CodedFrames frames, bool starts_group) {
   if (!now_.frames.empty() && now_.end() == frames.first) before_ = std::move(now_.frames.back());
   now_ = std::move(frames);
   ready_.clear();
+  return starts_group || !reconstructors_[0] ? Restart() : Status::Ok();
+}
+
+Status FrameSource::Restart() {
+  ready_.clear();
   for (std::unique_ptr<Reconstructor>& r : reconstructors_) {
-    const bool is_new = !r;
-    if (is_new) r = std::make_unique<Reconstructor>(shape_, header_);
-    if ((is_new || starts_group) && !r->StartGroup()) return Status::Corrupt("the first frame's shape is singular");
+    if (!r) r = std::make_unique<Reconstructor>(shape_, header_);
+    if (!r->StartGroup()) return Status::Corrupt("the first frame's shape is singular");
   }
   return Status::Ok();
 }
@@ -71,6 +71,7 @@ Status FrameSource::ReconstructWith(Reconstructor& with, std::uint32_t frame, Po
 void FrameSource::ReconstructAhead(std::uint32_t frame, std::uint32_t step) {
   ready_.clear();
   const std::uint64_t most = std::uint64_t{kRun} * reconstructors_.size();
+  ready_.reserve(most);
   for (std::uint64_t f = frame; f < now_.end() && ready_.size() < most; f += step) {
     ready_.push_back({static_cast<std::uint32_t>(f), {}, {}});
   }
@@ -79,13 +80,20 @@ void FrameSource::ReconstructAhead(std::uint32_t frame, std::uint32_t step) {
       Ready& r = ready_[i];
       try {
         r.status = ReconstructWith(*reconstructors_[thread], r.frame, r.positions);
-      } catch (const std::exception& e) {
-        r.status = Status::Limit(e.what());
+      } catch (const std::exception&) {
+        r.status = Status::Limit("out of memory");
       }
     }
   };
   std::vector<std::jthread> others;
-  for (std::size_t t = 1; t * kRun < ready_.size(); ++t) others.emplace_back(run, t);
+  others.reserve(reconstructors_.size());
+  for (std::size_t t = 1; t * kRun < ready_.size(); ++t) {
+    try {
+      others.emplace_back(run, t);
+    } catch (const std::system_error&) {  // there are too many already
+      run(t);
+    }
+  }
   run(0);
 }
 
@@ -99,8 +107,10 @@ Status FrameSource::Reconstruct(std::uint32_t frame, std::uint32_t step, Positio
     ReconstructAhead(frame, step);
     at = ready_.begin();
   }
-  positions = std::move(at->positions);
-  return std::exchange(at->status, Status::Corrupt("asked for twice"));
+  const Ready ready = std::move(*at);
+  ready_.erase(ready_.begin(), at + 1);
+  positions = std::move(ready.positions);
+  return ready.status;
 }
 
 Status FrameSource::Interpolate(double time, Positions& positions) {
@@ -109,12 +119,16 @@ Status FrameSource::Interpolate(double time, Positions& positions) {
   const CodedFrames::Frame* const a = Find(frame);
   const CodedFrames::Frame* b = time == floor ? a : Find(frame + 1);
   if (!a->whole || !b->whole) {
-    return Status::InvalidArgument("frame " + std::to_string(frame) + " or the next is lost");
+    return Status::Corrupt("frame " + std::to_string(frame) + " or the next is lost");
   }
-  // Within a group, only a cut is predicted from nothing.
-  const bool cut = b != a && b->intra && frame + 1 != now_.first;
-  const PositionMatrix matrix =
-      reconstructors_[0]->Reconstruct(cut ? a->coefficients : Between(a->coefficients, b->coefficients, time - floor));
+  const FrameCoefficients &from = a->coefficients, &to = b->coefficients;
+  const double t = time - floor;
+  Reconstructor& reconstructor = *reconstructors_[0];
+  reconstructor.ReconstructMotion(Between(from.planes[kMotion], to.planes[kMotion], t));
+  for (const Plane p : {kDisplacement, kDetail, kCorrection}) {
+    reconstructor.Add(p, Between(from.planes[p], to.planes[p], t));
+  }
+  const PositionMatrix matrix = reconstructor.ApplyRigidBetween(from.rigid, to.rigid, t);
   if (!(matrix.array().abs() <= std::numeric_limits<float>::max()).all()) {
     return Status::Corrupt("frame " + std::to_string(frame) + ": positions that are not finite");
   }

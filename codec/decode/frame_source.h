@@ -17,12 +17,14 @@ namespace sac {
 // Holds the coefficients of the frames that were read last, and turns them into positions.
 class FrameSource {
  public:
-  // `shape` must outlive it. `threads` reconstruct frames that do not depend on each other.
+  // `shape` must outlive it. `threads`, one at least, reconstruct frames that do not depend on each other.
   FrameSource(const Shape& shape, const SequenceHeader& header, unsigned threads);
 
   // Frames of a new group, or the next one of an open group. The last frame of those before is kept for Interpolate().
   // kCorrupt when the first frame's shape is singular.
   Status Take(CodedFrames frames, bool starts_group);
+  // The same frames from the first on. Likewise.
+  Status Restart();
   const CodedFrames& frames() const { return now_; }
   bool Holds(std::uint32_t frame) const { return Find(frame) != nullptr; }
   // Whether a frame that it holds needed no other.

@@ -36,14 +36,6 @@ Status GroupParser::ParseFrame(const FrameSlot& slot, RangeDecoder& range, Frame
   return Status::Ok();
 }
 
-Status GroupParser::Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, CodedFrames& out) const {
-  return Parse(group, code, false, out);
-}
-
-Status GroupParser::ParseCut(const GroupSyntax& group, std::span<const std::uint8_t> code, CodedFrames& out) const {
-  return Parse(group, code, true, out);
-}
-
 Status GroupParser::Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, bool cut,
                           CodedFrames& out) const {
   SAC_RETURN_IF_ERROR(CheckSize(group.frames));
@@ -57,7 +49,7 @@ Status GroupParser::Parse(const GroupSyntax& group, std::span<const std::uint8_t
   for (; parsed < structure.size(); ++parsed) {
     bool is_intra = false;
     const Status s = ParseFrame(structure[parsed], range, coder, is_intra);
-    if (cut && (!s.ok() || range.AtEnd())) break;  // what was read may be made up
+    if (cut && (!s.ok() || !range.IsCertain())) break;
     if (!s.ok()) return AtFrame(group.first_frame + structure[parsed].display, s);
     intra[parsed] = is_intra;
   }

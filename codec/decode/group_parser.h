@@ -38,11 +38,9 @@ class GroupParser {
         frames_per_group_(limits.frames_per_group),
         group_values_(MostGroupValues(limits, shape)) {}
 
-  // A whole group. kCorrupt, with the frame's number; kLimit.
-  Status Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, CodedFrames& out) const;
-  // A group whose code is cut off: the frames whose bytes are all there, the others not whole. kCorrupt when there are
-  // none.
-  Status ParseCut(const GroupSyntax& group, std::span<const std::uint8_t> code, CodedFrames& out) const;
+  // A group. Of one whose code is `cut` off, the frames whose bytes are all there, the others not whole. kCorrupt, with
+  // the frame's number, or when no frame is whole; kLimit.
+  Status Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, bool cut, CodedFrames& out) const;
 
   // An open group begins; its frames come one by one.
   void Open(std::uint32_t first_frame);
@@ -53,7 +51,6 @@ class GroupParser {
  private:
   Status CheckSize(std::uint32_t frames) const;
   Status ParseFrame(const FrameSlot& slot, RangeDecoder& range, FrameCoder<RangeDecoder>& coder, bool& intra) const;
-  Status Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, bool cut, CodedFrames& out) const;
 
   const SequenceHeader& header_;
   const PlaneLayouts& layouts_;

@@ -46,6 +46,10 @@ Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, 
     return Status::Corrupt("I-frame: loose vertices without colours");
   }
 
+  if (vertices + syntax.loose_vertices.size() != header.vertices) {
+    return Status::Corrupt("I-frame: the number of vertices is not the header's");
+  }
+
   // 2. Their positions.
   std::vector<GridPosition> grid;
   if (!syntax.mesh.empty()) {
@@ -61,7 +65,6 @@ Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, 
     if (syntax.has_normals) draco.normals.resize(entries + i), draco.normals.push_back(v.normal);
     if (syntax.has_colors) draco.colors.resize(entries + i), draco.colors.push_back(v.color);
   }
-  if (vertices != header.vertices) return Status::Corrupt("I-frame: the number of vertices is not the header's");
   if (triangles.size() + syntax.loose_triangles.size() != header.triangles) {
     return Status::Corrupt("I-frame: the number of triangles is not the header's");
   }

@@ -13,8 +13,8 @@
 
 namespace sac {
 
-// The first frame's mesh with vertices numbered as everywhere after it: by component, then as Draco gives them
-// (spec.md 5.3).
+// The first frame's mesh with vertices numbered as everywhere after it: by component, by patch, then as Draco gives
+// them (spec.md 5.3, 5.4).
 struct DecodedIFrame {
   DecodedMesh mesh;
   std::vector<std::array<float, 2>> uvs;

@@ -22,6 +22,8 @@ class PacketSource {
   // read again; then `bytes` are left alone. `damaged` is set when packets have been skipped; without skip_damage
   // damage is an error, kCorrupt or kLimit.
   Status Read(std::span<const std::uint8_t>& bytes, std::optional<Packet>& packet, bool& damaged);
+  // Whether there are bytes that have not become a packet, and may.
+  bool HasMore() const { return HasOld() || (!search_ && !reader_.IsBetweenPackets()); }
   // Whether there are bytes to be read again.
   bool HasOld() const { return replayed_ < replay_.size(); }
 

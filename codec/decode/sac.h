@@ -2,7 +2,8 @@
  *
  *   sac_settings settings;
  *   sac_settings_init(&settings);
- *   sac_decoder* decoder = sac_decoder_open(&settings);
+ *   sac_decoder* decoder;
+ *   if (sac_decoder_open(&decoder, &settings) != SAC_OK) return;
  *   while ((size = read(chunk)) > 0) {                           // in any chunking
  *     const uint8_t* data = chunk;
  *     while (size > 0) {
@@ -17,7 +18,8 @@
  *   sac_decoder_close(decoder);
  *
  * A decoder is used by one thread at a time; decoders share nothing. Pointers that a decoder gives out are its own and
- * stay valid until it is reset or closed. No function throws or ends the program. */
+ * stay valid until it is reset or closed, a message until the next call. No function throws or ends the program. Structs
+ * stay as they are but sac_settings, which knows its size: what else a later version tells, it tells by new functions. */
 #ifndef SAC_H
 #define SAC_H
 
@@ -38,7 +40,7 @@ typedef enum sac_status {
   SAC_OK = 0,
   SAC_NEED_MORE_DATA = 1,   /* not an error: send more bytes and ask again */
   SAC_INVALID_ARGUMENT = 2, /* what the caller gave cannot be used */
-  SAC_UNSUPPORTED = 3,      /* a stream of another version */
+  SAC_UNSUPPORTED = 3,      /* a stream of another version, or what a stream cannot give */
   SAC_CORRUPT = 4,          /* the bytes break a rule of spec.md */
   SAC_LIMIT = 5             /* a limit of the settings, or of memory */
 } sac_status;
@@ -61,7 +63,7 @@ typedef struct sac_settings {
   double max_work_per_byte;
   double max_frame_work;
   uint32_t skip_damage; /* 1: go on after damage at the next sound group; 0: errors are final */
-  uint32_t frame_step;  /* sac_decoder_receive() gives the frames whose number is a multiple of this */
+  uint32_t frame_step;  /* sac_decoder_receive() gives the frames whose number is a multiple of this, not 0 */
   uint32_t threads;     /* that reconstruct frames of a group */
 } sac_settings;
 
@@ -110,51 +112,59 @@ typedef struct sac_mesh {
 
 typedef struct sac_decoder sac_decoder;
 
-/* The version of the library, such as "0.1.0", and of the streams that it decodes, such as "0.6". */
+/* The version of the library, such as "0.1.0", and of the streams that it decodes, such as "0.7". */
 SAC_API const char* sac_version(void);
 SAC_API const char* sac_stream_version(void);
 
 SAC_API void sac_settings_init(sac_settings* settings);
 
-/* Null `settings` are those of sac_settings_init(). Null when the settings cannot be used or memory is short. */
-SAC_API sac_decoder* sac_decoder_open(const sac_settings* settings);
+/* Null `settings` are those of sac_settings_init(). Else *decoder is null: SAC_INVALID_ARGUMENT when the settings cannot
+ * be used, SAC_UNSUPPORTED when they are of a later library, SAC_LIMIT when memory is short. */
+SAC_API sac_status sac_decoder_open(sac_decoder** decoder, const sac_settings* settings);
 /* Null is allowed. */
 SAC_API void sac_decoder_close(sac_decoder* decoder);
 /* Forgets everything but the settings: another stream may begin. */
 SAC_API void sac_decoder_reset(sac_decoder* decoder);
 
 /* Takes bytes from *data, at most until a packet is complete, and moves *data and *size on. Takes nothing while frames
- * wait to be received. */
+ * wait to be received. With the last byte of the first frame's packet it computes all that follows from that frame, which
+ * may take a second for a large mesh: not on a thread that must not wait. */
 SAC_API sac_status sac_decoder_send(sac_decoder* decoder, const uint8_t** data, size_t* size);
 /* The next frame into the caller's memory. SAC_NEED_MORE_DATA when none is ready; SAC_INVALID_ARGUMENT, and the frame
  * still waits, when a buffer is too small. Either pointer may be null. */
 SAC_API sac_status sac_decoder_receive(sac_decoder* decoder, const sac_frame_buffers* buffers, sac_frame_info* info);
 /* Declares the end of the bytes: SAC_CORRUPT when the stream is not complete. With skip_damage, more frames may be
- * received afterwards. */
+ * received afterwards; called again after the last of them, it tells whether the stream was complete. */
 SAC_API sac_status sac_decoder_finish(sac_decoder* decoder);
 
 /* The triangles and attributes; SAC_NEED_MORE_DATA before they have been sent. */
 SAC_API sac_status sac_decoder_mesh(sac_decoder* decoder, sac_mesh* mesh);
 
 /* Goes to a frame, or to the one that is shown at so many seconds: the next bytes sent must be those of the stream from
- * *byte on. SAC_NEED_MORE_DATA before the mesh has been sent. A clip is played again by seeking frame 0. */
+ * *byte on, which counts from the first byte that was sent, or that an index counts from. With a frame_step the next of
+ * its multiples is received. SAC_NEED_MORE_DATA before the mesh has been sent; SAC_INVALID_ARGUMENT beyond the end, where
+ * it is known. A clip is played again by seeking frame 0. */
 SAC_API sac_status sac_decoder_seek(sac_decoder* decoder, uint32_t frame, uint64_t* byte);
 SAC_API sac_status sac_decoder_seek_time(sac_decoder* decoder, double seconds, uint64_t* byte);
 /* Tells where groups begin, from the last bytes of the stream. SAC_NEED_MORE_DATA: *needed of them are needed, 8 at
  * first. SAC_INVALID_ARGUMENT: the stream has no index; likewise when *needed comes to be more than the stream has. */
 SAC_API sac_status sac_decoder_add_index(sac_decoder* decoder, const uint8_t* tail, size_t size, size_t* needed);
 
-/* The shape at a time between frames, in frames from the clip's begin. Frames before it count as received.
- * SAC_NEED_MORE_DATA when the frame after has not been sent; SAC_INVALID_ARGUMENT when the one before is gone: seek it.
- */
+/* The shape at a time between frames, in frames from the clip's begin; the last frame is held for its time. Frames
+ * before it count as received. SAC_NEED_MORE_DATA when the frame after has not been sent; SAC_INVALID_ARGUMENT when the
+ * one before is gone: seek it; or beyond the end, where it is known. SAC_CORRUPT when one of them is lost, go on with a
+ * later time; SAC_UNSUPPORTED when the stream's frames are measured against the frame before. */
 SAC_API sac_status sac_decoder_interpolate(sac_decoder* decoder, double frame_time, const sac_frame_buffers* buffers,
                                            sac_frame_info* info);
+
+/* How many frames the clip has. SAC_NEED_MORE_DATA before the end or sac_decoder_add_index() has told. */
+SAC_API sac_status sac_decoder_frames(sac_decoder* decoder, uint32_t* frames);
 
 /* With skip_damage: how many runs of frames are lost so far, and the one of that index. */
 SAC_API size_t sac_decoder_lost_count(const sac_decoder* decoder);
 SAC_API sac_status sac_decoder_lost(const sac_decoder* decoder, size_t index, uint32_t* first, uint32_t* count);
 
-/* What the last call that failed complained of, one line; empty when none has. */
+/* What the last call that failed complained of, one line, until the next call; empty when none has. */
 SAC_API const char* sac_decoder_message(const sac_decoder* decoder);
 
 #ifdef __cplusplus

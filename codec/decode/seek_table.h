@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <iterator>
+#include <optional>
 #include <vector>
 
 #include "format/stream_index.h"
@@ -17,12 +18,14 @@ class SeekTable {
   void Start(std::uint64_t byte) { start_ = byte; }
 
   void Add(std::uint64_t byte, std::uint32_t first_frame) {
+    if (has_index_) return;
     const auto at = std::ranges::lower_bound(places_, byte, {}, &Place::byte);
     if (at == places_.end() || at->byte != byte) places_.insert(at, {byte, first_frame});
   }
 
   // All of them; returns the byte after the last group.
   std::uint64_t Take(const StreamIndex& index) {
+    has_index_ = true;
     places_.clear();
     std::uint64_t byte = index.first_group;
     std::uint32_t frame = 0;
@@ -34,10 +37,16 @@ class SeekTable {
     return byte;
   }
 
+  struct Place {
+    std::uint64_t byte;
+    std::optional<std::uint32_t> first_frame;  // of the group; none when it is not known
+    bool operator==(const Place&) const = default;
+  };
+
   // Where to read on for `frame`: the last known group that begins with it or before.
-  std::uint64_t Find(std::uint32_t frame) const {
+  Place Find(std::uint32_t frame) const {
     const auto at = std::ranges::upper_bound(places_, frame, {}, &Place::first_frame);
-    return at == places_.begin() ? start_ : std::prev(at)->byte;
+    return at == places_.begin() ? Place{start_, std::nullopt} : *std::prev(at);
   }
 
   // Whether `index` says the same of a stream whose end packet begins at `end`.
@@ -47,11 +56,7 @@ class SeekTable {
   }
 
  private:
-  struct Place {
-    std::uint64_t byte;
-    std::uint32_t first_frame;
-    bool operator==(const Place&) const = default;
-  };
+  bool has_index_ = false;
   std::uint64_t start_ = 0;
   std::vector<Place> places_;  // ascending
 };

@@ -6,8 +6,8 @@ int main(int argc, char** argv) {
   size_t size;
   unsigned frames = 0;
   FILE* file = argc == 2 ? fopen(argv[1], "rb") : NULL;
-  sac_decoder* decoder = sac_decoder_open(NULL);
-  if (file == NULL || decoder == NULL) return 2;
+  sac_decoder* decoder;
+  if (file == NULL || sac_decoder_open(&decoder, NULL) != SAC_OK) return 2;
   while ((size = fread(chunk, 1, sizeof chunk, file)) > 0) {
     const uint8_t* data = chunk;
     while (size > 0) {

@@ -58,6 +58,7 @@ def _check_header(data: bytes, triangles: int) -> None:
     faces = reader.varint()
     require(faces <= triangles, 32, f"Draco says {faces} triangles")
     require(vertices <= 3 * faces, 32, f"Draco says {vertices} vertices")
+    require(reader.u8() <= 3, 32, "Draco says more attributes than there are kinds")
 
 
 def _run_draco(data: bytes) -> dict:
