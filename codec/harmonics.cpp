@@ -21,7 +21,7 @@ constexpr double kInhomogeneity = 0.1;
 constexpr std::uint32_t kDenseSize = 96;   // up to here all eigenpairs at once are as quick as the wanted ones
 constexpr int kSpareVectors = 20;          // of Lanczos, beside two for each wanted one
 constexpr double kFunctionsMemory = 1000;  // a vertex, of the radial functions that reach it on a surface
-constexpr double kFunctionMemory = 40;     // of each of them
+constexpr double kFunctionMemory = 90;     // of each of them
 // Surfaces take 1 or 2 restarts; what is next to a long path, whose eigenvalues are all but equal, takes hundreds.
 constexpr int kUsualRestarts = 5, kMostRestarts = 60;
 

@@ -47,20 +47,20 @@ bool RadialFunctions(std::span<const std::array<std::uint32_t, 3>> grid, std::ui
   }
 
   const double radius = kReach * std::sqrt(static_cast<double>(std::max<std::uint64_t>(covering, 1)));
-  std::vector<Eigen::Triplet<double>> entries;
+  functions.resize(static_cast<Eigen::Index>(grid.size()), samples);
   Eigen::VectorXd sum = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(grid.size()));
   for (std::size_t i = 0; i < chosen.size(); ++i) {
+    functions.startVec(static_cast<Eigen::Index>(i));
     for (std::size_t v = 0; v < grid.size(); ++v) {
       const double t = std::sqrt(static_cast<double>(SquaredDistance(grid[v], grid[chosen[i]]))) / radius;
       if (t >= 1) continue;
-      if (static_cast<double>(entries.size()) >= most_values) return false;
+      if (static_cast<double>(functions.data().size()) >= most_values) return false;
       const double value = Wendland(t);
-      entries.emplace_back(static_cast<int>(v), static_cast<int>(i), value);
+      functions.insertBack(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(i)) = value;
       sum[static_cast<Eigen::Index>(v)] += value;
     }
   }
-  functions.resize(static_cast<Eigen::Index>(grid.size()), samples);
-  functions.setFromTriplets(entries.begin(), entries.end());
+  functions.finalize();
   sum = sum.cwiseInverse();
   for (Eigen::Index i = 0; i < functions.outerSize(); ++i) {
     for (Eigen::SparseMatrix<double>::InnerIterator it(functions, i); it; ++it) it.valueRef() *= sum[it.row()];

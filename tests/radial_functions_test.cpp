@@ -70,7 +70,6 @@ TEST(RadialFunctions, AreCountedBeforeTheyAreStored) {
   Eigen::SparseMatrix<double> functions;
   EXPECT_TRUE(RadialFunctions(grid, 60, values, functions));
   EXPECT_FALSE(RadialFunctions(grid, 60, values - 1, functions));
-  EXPECT_EQ(functions.cols(), 0);
 }
 
 }  // namespace
