@@ -41,7 +41,8 @@ Status SpectralBasis::Build(std::vector<Triangle> triangles, const PositionMatri
   const EdgeList edges = BuildEdges(triangles_);
   HarmonicBasis harmonics;
   SAC_RETURN_IF_ERROR(ComputeHarmonics(edges, CotangentWeights(first_frame, triangles_, edges),
-                                       VertexMasses(first_frame, triangles_), grid, components_, counts, 0, {}, harmonics));
+                                       VertexMasses(first_frame, triangles_), grid, components_, counts, 0, {},
+                                       harmonics));
   const auto columns = static_cast<Eigen::Index>(std::accumulate(counts.begin(), counts.end(), 0u));
   Eigen::MatrixXd at_vertices = Eigen::MatrixXd::Zero(n, columns);
   Eigen::Index column = 0;

@@ -18,8 +18,9 @@
  *   sac_decoder_close(decoder);
  *
  * A decoder is used by one thread at a time; decoders share nothing. Pointers that a decoder gives out are its own and
- * stay valid until it is reset or closed, a message until the next call. No function throws or ends the program. Structs
- * stay as they are but sac_settings, which knows its size: what else a later version tells, it tells by new functions. */
+ * stay valid until it is reset or closed, a message until the next call. No function throws or ends the program.
+ * Structs stay as they are but sac_settings, which knows its size: what else a later version tells, it tells by new
+ * functions. */
 #ifndef SAC_H
 #define SAC_H
 
@@ -118,8 +119,8 @@ SAC_API const char* sac_stream_version(void);
 
 SAC_API void sac_settings_init(sac_settings* settings);
 
-/* Null `settings` are those of sac_settings_init(). Else *decoder is null: SAC_INVALID_ARGUMENT when the settings cannot
- * be used, SAC_UNSUPPORTED when they are of a later library, SAC_LIMIT when memory is short. */
+/* Null `settings` are those of sac_settings_init(). Else *decoder is null: SAC_INVALID_ARGUMENT when the settings
+ * cannot be used, SAC_UNSUPPORTED when they are of a later library, SAC_LIMIT when memory is short. */
 SAC_API sac_status sac_decoder_open(sac_decoder** decoder, const sac_settings* settings);
 /* Null is allowed. */
 SAC_API void sac_decoder_close(sac_decoder* decoder);
@@ -127,8 +128,8 @@ SAC_API void sac_decoder_close(sac_decoder* decoder);
 SAC_API void sac_decoder_reset(sac_decoder* decoder);
 
 /* Takes bytes from *data, at most until a packet is complete, and moves *data and *size on. Takes nothing while frames
- * wait to be received. With the last byte of the first frame's packet it computes all that follows from that frame, which
- * may take a second for a large mesh: not on a thread that must not wait. */
+ * wait to be received. With the last byte of the first frame's packet it computes all that follows from that frame,
+ * which may take a second for a large mesh: not on a thread that must not wait. */
 SAC_API sac_status sac_decoder_send(sac_decoder* decoder, const uint8_t** data, size_t* size);
 /* The next frame into the caller's memory. SAC_NEED_MORE_DATA when none is ready; SAC_INVALID_ARGUMENT, and the frame
  * still waits, when a buffer is too small. Either pointer may be null. */
@@ -142,8 +143,8 @@ SAC_API sac_status sac_decoder_mesh(sac_decoder* decoder, sac_mesh* mesh);
 
 /* Goes to a frame, or to the one that is shown at so many seconds: the next bytes sent must be those of the stream from
  * *byte on, which counts from the first byte that was sent, or that an index counts from. With a frame_step the next of
- * its multiples is received. SAC_NEED_MORE_DATA before the mesh has been sent; SAC_INVALID_ARGUMENT beyond the end, where
- * it is known. A clip is played again by seeking frame 0. */
+ * its multiples is received. SAC_NEED_MORE_DATA before the mesh has been sent; SAC_INVALID_ARGUMENT beyond the end,
+ * where it is known. A clip is played again by seeking frame 0. */
 SAC_API sac_status sac_decoder_seek(sac_decoder* decoder, uint32_t frame, uint64_t* byte);
 SAC_API sac_status sac_decoder_seek_time(sac_decoder* decoder, double seconds, uint64_t* byte);
 /* Tells where groups begin, from the last bytes of the stream. SAC_NEED_MORE_DATA: *needed of them are needed, 8 at

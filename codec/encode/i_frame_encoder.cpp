@@ -133,7 +133,8 @@ bool TryDraco(const Mesh& input, const SequenceHeader& header, std::vector<std::
   std::vector<std::uint8_t> bytes_with_ids;
   DracoMesh with_ids;
   if (!RunDraco(input, selected, false, bytes).ok() || !DecodeDraco(bytes, header, draco).ok()) return false;
-  if (!RunDraco(input, selected, true, bytes_with_ids).ok() || !DecodeDraco(bytes_with_ids, header, with_ids, true).ok()) {
+  if (!RunDraco(input, selected, true, bytes_with_ids).ok() ||
+      !DecodeDraco(bytes_with_ids, header, with_ids, true).ok()) {
     return false;
   }
   // The ids are of another run; they count only if both agree on everything else.
