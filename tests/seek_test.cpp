@@ -363,6 +363,26 @@ TEST(Interpolate, TurnsTheShortWayBetweenGroups) {
   }
 }
 
+TEST(Interpolate, TellsLostFromGone) {
+  Bytes stream = Encode(BendingClip(kFrames), Grouped()).bytes;
+  const std::vector<Packet> packets = Packets(stream);
+  std::size_t end = 4;  // of the second group
+  for (std::size_t i = 0; i < 4; ++i) end += PacketSize(packets[i].payload.size());
+  stream[end - 1] ^= 1;
+  DecoderSettings settings;
+  settings.skip_damage = true;
+  Decoder decoder(settings);
+  DecodedFrame frame;
+  ReadOn(decoder, stream, 0);
+  for (const double time : {4.5, 5.0, 7.5, 9.5}) {
+    EXPECT_EQ(decoder.Interpolate(time, frame).code(), StatusCode::kCorrupt) << time;
+  }
+  for (const double time : {1.0, 3.5, 10.0, 12.5}) {
+    EXPECT_EQ(decoder.Interpolate(time, frame).code(), StatusCode::kInvalidArgument) << time;
+  }
+  EXPECT_TRUE(decoder.Interpolate(21.5, frame).ok());
+}
+
 TEST(Interpolate, FramesBeforeCountAsReceived) {
   const Bytes stream = Encode(BendingClip(kFrames), Grouped()).bytes;
   Decoder decoder;

@@ -372,7 +372,9 @@ Status Decoder::Impl::Interpolate(double time, Positions& positions, FrameInfo& 
   const auto frame = static_cast<std::uint32_t>(time), after = static_cast<std::uint32_t>(std::ceil(time));
   while (!source_->Holds(frame) || !source_->Holds(after)) {
     if (next_frame_ && after < *next_frame_) {
-      return Status::InvalidArgument("frame " + std::to_string(frame) + " or the next is gone");
+      const std::string frames = "frame " + std::to_string(frame) + " or the next is ";
+      return lost.Has(frame) || lost.Has(after) ? Status::Corrupt(frames + "lost")
+                                                : Status::InvalidArgument(frames + "gone");
     }
     next_out_ = source_->frames().end();
     if (!CanAdvance()) {

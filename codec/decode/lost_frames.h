@@ -25,6 +25,10 @@ class LostFrames {
     if (first < end) ranges_.insert(at, {static_cast<std::uint32_t>(first), static_cast<std::uint32_t>(end - first)});
   }
   bool any() const { return !ranges_.empty(); }
+  bool Has(std::uint64_t frame) const {
+    const auto at = std::ranges::upper_bound(ranges_, frame, {}, End);
+    return at != ranges_.end() && at->first <= frame;
+  }
   // Ascending; none touches another.
   const std::vector<FrameRange>& ranges() const { return ranges_; }
 
