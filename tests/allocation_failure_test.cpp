@@ -122,6 +122,9 @@ void GoOnAfterEach(const char* file, unsigned threads) {
     std::uint64_t byte = 0;
     if (!decoder.Seek(0, byte).ok()) continue;  // before the mesh was there
     ++sought;
+    DecodedFrame between;
+    (void)decoder.Interpolate(0.5, between);
+    ASSERT_TRUE(decoder.Seek(0, byte).ok());
     std::vector<Positions> again;
     const Status status =
         DecodeAll(decoder, Bytes(stream.begin() + static_cast<std::ptrdiff_t>(byte), stream.end()), &again);

@@ -251,6 +251,80 @@ TEST(Damage, AnotherStreamIsNotShownOnThisMesh) {
   EXPECT_EQ(got.status.code(), StatusCode::kCorrupt);
 }
 
+TEST(Damage, AnotherStreamTakesTheMeshThatIsMissing) {
+  const Bytes one = Encode(BendingClip(kGroup), Grouped()).bytes;
+  EncoderSettings settings = Grouped();
+  settings.harmonics = 12;
+  const Bytes other = Encode(BendingClip(3 * kGroup), settings).bytes;
+  std::vector<Packet> packets = Packets(one);
+  packets.erase(packets.begin() + 1);  // the I-frame
+  for (const Packet& p : Packets(other)) packets.push_back(p);
+  const Survived got = DecodeDamaged(Join(packets), 100);
+  ASSERT_EQ(got.frames.size(), 3 * kGroup);
+  EXPECT_EQ(got.frames.back().positions, Decode(other).frames.back().positions);
+}
+
+TEST(Damage, TheFirstGroupMayBeSoughtAndLost) {
+  Bytes stream = Encode(BendingClip(kFrames), Grouped()).bytes;
+  const auto groups = GroupBytes(stream);
+  stream[groups[0].second - 6] ^= 1;
+  DecoderSettings settings;
+  settings.skip_damage = true;
+  Decoder decoder(settings);
+  std::span<const std::uint8_t> rest(stream);
+  while (!decoder.mesh()) ASSERT_TRUE(decoder.Send(rest).ok());
+  std::uint64_t byte = 0;
+  ASSERT_TRUE(decoder.Seek(0, byte).ok());
+  EXPECT_EQ(byte, groups[0].first);
+  for (rest = std::span(stream).subspan(byte); !rest.empty();) {
+    ASSERT_TRUE(decoder.Send(rest).ok());
+    for (DecodedFrame frame; decoder.Receive(frame).ok();) EXPECT_GE(frame.index, kGroup);
+  }
+  ASSERT_EQ(decoder.lost_frames().size(), 1u);
+  EXPECT_EQ(decoder.lost_frames()[0].first, 0u);
+  EXPECT_EQ(decoder.lost_frames()[0].count, kGroup);
+}
+
+TEST(Damage, ACutGroupIsSentAgainAfterASeek) {
+  const Bytes stream = Encode(BendingClip(kFrames), Grouped()).bytes;
+  const Decoded whole = Decode(stream);
+  const auto groups = GroupBytes(stream);
+  DecoderSettings settings;
+  settings.skip_damage = true;
+  Decoder decoder(settings);
+  DecodedFrame frame;
+  for (auto rest = std::span(stream).first((groups[1].first + 2 * groups[1].second) / 3); !rest.empty();) {
+    ASSERT_TRUE(decoder.Send(rest).ok());
+    while (decoder.Receive(frame).ok()) {
+    }
+  }
+  (void)decoder.Finish();
+  while (decoder.Receive(frame).ok()) {
+  }
+  std::uint64_t byte = 0;
+  ASSERT_TRUE(decoder.Seek(kGroup + 3, byte).ok());
+  auto rest = std::span(stream).subspan(byte);
+  Status status;
+  while ((status = decoder.Interpolate(kGroup + 3, frame)).code() == StatusCode::kNeedMoreData && !rest.empty()) {
+    ASSERT_TRUE(decoder.Send(rest).ok());
+  }
+  ASSERT_TRUE(status.ok()) << status.message();
+  EXPECT_EQ(frame.positions, whole.frames[kGroup + 3].positions);
+}
+
+// A cut group without its check may say anything.
+TEST(Damage, ACutGroupHasToFit) {
+  EncoderSettings settings = Grouped();
+  settings.index = false;
+  Bytes stream = Encode(BendingClip(kFrames), settings).bytes;
+  stream.resize(GroupBytes(stream)[0].second);
+  const Bytes group = WritePacket(PacketType::kGroup, WriteGroup({4000, 3000000000u, 8}, Bytes(300, 0x55)));
+  stream.insert(stream.end(), group.begin(), group.end() - 100);
+  const Survived got = DecodeDamaged(stream, 100);
+  EXPECT_EQ(got.frames.size(), kGroup);
+  EXPECT_TRUE(got.lost.empty());
+}
+
 TEST(Damage, LimitsAreNone) {
   const Bytes stream = Encode(BendingClip(kFrames), Grouped()).bytes;
   DecoderSettings settings;

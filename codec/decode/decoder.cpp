@@ -183,6 +183,7 @@ Status Decoder::Impl::Take(const Packet& packet, std::uint64_t begin) {
 }
 
 Status Decoder::Impl::TakeHeader(std::span<const std::uint8_t> payload) {
+  if (header && !mesh && settings.skip_damage) header.reset();  // its I-frame is lost; another stream may be here
   if (header) {
     after_header_ = std::ranges::equal(payload, header_bytes_);
     foreign_ = !after_header_;
@@ -211,7 +212,7 @@ Status Decoder::Impl::TakeIFrame(std::span<const std::uint8_t> payload) {
   const unsigned threads = header->references_previous() ? 1 : std::max(1u, settings.threads);
   source_.emplace(shape_, *header, UseThreads(threads, settings.limits, shape_));
   parser_.emplace(*header, shape_, settings.limits);
-  places_.Start(packets_.position());
+  places_.Start(packets_.position(), packets_.from_start());
   return Status::Ok();
 }
 
@@ -322,7 +323,7 @@ Status Decoder::Impl::TakeEnd(std::span<const std::uint8_t> payload, std::uint64
   if (status.ok() && end.index && packets_.from_start() && !lost.any() && !places_.Matches(*end.index, begin)) {
     status = Status::Corrupt("end: the index is not the stream's");
   }
-  if (!status.ok()) return settings.skip_damage ? Status::Ok() : status;
+  if (!status.ok()) return IsDamage(status) ? Status::Ok() : status;
   total_frames = end.frames;
   ended_ = true;
   return Status::Ok();
@@ -400,6 +401,7 @@ Status Decoder::Impl::Seek(std::uint32_t frame, std::uint64_t& byte) {
   parser_->Close();
   next_frame_ = place.first_frame;
   foreign_ = false;
+  if (!held_) source_->Drop();          // what cannot be known again, or is not whole
   next_out_ = source_->frames().end();  // none waits
   wanted_ = frame;
   return Status::Ok();
@@ -424,8 +426,11 @@ void Decoder::Impl::TakeCutGroup(std::span<const std::uint8_t> packet) {
   std::span<const std::uint8_t> code;
   CodedFrames frames;
   if (!ParseGroup(payload, group, code).ok() || group.open()) return;
-  if (foreign_ || !ContinueAt(group.first_frame).ok()) return;
-  next_frame_ = std::uint64_t{group.first_frame} + group.frames;
+  // Its check is missing: what it says has to fit.
+  const std::uint64_t end = std::uint64_t{group.first_frame} + group.frames;
+  if (foreign_ || next_frame_.value_or(group.first_frame) != group.first_frame) return;
+  if (end > total_frames.value_or(0xffffffffu)) return;
+  next_frame_ = end;
   if (!parser_->Parse(group, code, true, frames).ok()) return lost.Add(group.first_frame, *next_frame_);
   while (!frames.frames.back().whole) frames.frames.pop_back();
   held_.reset();

@@ -77,8 +77,9 @@ class Decoder {
   Status Receive(const FrameBuffers& buffers, FrameInfo& info);
 
   // Declares the end of the bytes: kCorrupt when the stream is not complete. With skip_damage, more frames may be ready
-  // to be received afterwards: those of a packet whose size was damaged, or of a group that is cut off. Called again
-  // after the last of them, it tells whether the stream was complete.
+  // to be received afterwards: those of a packet whose size was damaged, or of a group that is cut off: the latter
+  // without a check, which is cut off, too. Called again after the last of them, it tells whether the stream was
+  // complete.
   Status Finish();
 
   // Goes to `frame`, which the next Receive() gives: it sets `byte`, and the next bytes sent must be those of the

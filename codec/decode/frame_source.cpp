@@ -34,9 +34,17 @@ FrameSource::FrameSource(const Shape& shape, const SequenceHeader& header, unsig
 Status FrameSource::Take(CodedFrames frames, bool starts_group) {
   before_.reset();
   if (!now_.frames.empty() && now_.end() == frames.first) before_ = std::move(now_.frames.back());
-  now_ = std::move(frames);
+  now_ = {};
   ready_.clear();
-  return starts_group || !reconstructors_[0] ? Restart() : Status::Ok();
+  if (starts_group || !reconstructors_[0]) SAC_RETURN_IF_ERROR(Restart());
+  now_ = std::move(frames);
+  return Status::Ok();
+}
+
+void FrameSource::Drop() {
+  before_.reset();
+  now_ = {};
+  ready_.clear();
 }
 
 Status FrameSource::Restart() {

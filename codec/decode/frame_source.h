@@ -25,6 +25,8 @@ class FrameSource {
   Status Take(CodedFrames frames, bool starts_group);
   // The same frames from the first on. Likewise.
   Status Restart();
+  // Holds no frames.
+  void Drop();
   const CodedFrames& frames() const { return now_; }
   bool Holds(std::uint32_t frame) const { return Find(frame) != nullptr; }
   // Whether a frame that it holds needed no other.

@@ -14,8 +14,11 @@ namespace sac {
 // Where groups begin, as far as known.
 class SeekTable {
  public:
-  // The end of the I-frame: no group begins before.
-  void Start(std::uint64_t byte) { start_ = byte; }
+  // The end of the I-frame: no group begins before. `is_first`: the first one begins there.
+  void Start(std::uint64_t byte, bool is_first) {
+    start_ = {byte, std::nullopt};
+    if (is_first) start_.first_frame = 0;
+  }
 
   void Add(std::uint64_t byte, std::uint32_t first_frame) {
     if (has_index_) return;
@@ -46,7 +49,7 @@ class SeekTable {
   // Where to read on for `frame`: the last known group that begins with it or before.
   Place Find(std::uint32_t frame) const {
     const auto at = std::ranges::upper_bound(places_, frame, {}, &Place::first_frame);
-    return at == places_.begin() ? Place{start_, std::nullopt} : *std::prev(at);
+    return at == places_.begin() ? start_ : *std::prev(at);
   }
 
   // Whether `index` says the same of a stream whose end packet begins at `end`.
@@ -57,7 +60,7 @@ class SeekTable {
 
  private:
   bool has_index_ = false;
-  std::uint64_t start_ = 0;
+  Place start_ = {0, std::nullopt};
   std::vector<Place> places_;  // ascending
 };
 
