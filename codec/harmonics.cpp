@@ -106,7 +106,8 @@ bool SmallestEigenpairs(const Matrix& lower, std::uint32_t count, EigenPairs& ou
 bool ExactHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, std::uint32_t count,
                     EigenPairs& out) {
   const Eigen::VectorXd scale = mass.cwiseSqrt().cwiseInverse();
-  const Eigen::SparseMatrix<double> scaled = scale.asDiagonal() * laplacian * scale.asDiagonal();
+  Eigen::SparseMatrix<double> scaled;
+  scaled = scale.asDiagonal() * laplacian * scale.asDiagonal();
   if (!SmallestEigenpairs<SparseShiftSolve>(scaled, count, out)) return false;
   out.vectors = scale.asDiagonal() * out.vectors;
   return true;
@@ -141,16 +142,20 @@ bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd&
 // Of the same problem within the span of `functions` (Rayleigh-Ritz): S^T L S y = lambda S^T D S y, h = S y.
 bool ReducedHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass,
                       const Eigen::SparseMatrix<double>& functions, std::uint32_t count, EigenPairs& out) {
-  const Eigen::SparseMatrix<double> image = laplacian.selfadjointView<Eigen::Lower>() * functions;
+  // Assigned, not constructed: Eigen's constructors lose memory when there is too little.
+  Eigen::SparseMatrix<double> full, image, weighted;
+  full = laplacian.selfadjointView<Eigen::Lower>();
+  image = full * functions;
   const Eigen::MatrixXd stiffness = functions.transpose() * image;
-  const Eigen::SparseMatrix<double> weighted = mass.asDiagonal() * functions;
+  weighted = mass.asDiagonal() * functions;
   const Eigen::LLT<Eigen::MatrixXd> gram(Eigen::MatrixXd(functions.transpose() * weighted));
   if (gram.info() != Eigen::Success) return false;
   Eigen::MatrixXd standard = gram.matrixL().solve(stiffness).transpose();
   standard = gram.matrixL().solve(standard).eval();
   standard = (standard + standard.transpose()).eval() / 2;
   if (!SmallestEigenpairs<DenseShiftSolve>(standard, count, out)) return false;
-  const Eigen::SparseMatrix<double, Eigen::RowMajor> rows = functions;
+  Eigen::SparseMatrix<double, Eigen::RowMajor> rows;
+  rows = functions;
   const RowMatrix mixed = gram.matrixU().solve(out.vectors);
   return Refine(laplacian, mass, rows * mixed, out);
 }
