@@ -108,11 +108,12 @@ TEST(MemoryLimit, IsAboutWhatADecoderHolds) {
   settings.harmonics = 200;
   ExpectCountedAbove("parts", Encode(SynthKind::kParts, 3000, 100, settings));
   ExpectCountedAbove("vase", Encode(SynthKind::kVase, 3000, 100, settings));
-  settings.group = 50;
-  ExpectCountedAbove("two groups", Encode(SynthKind::kParts, 3000, 100, settings));
+  settings.group = 30;
+  settings.harmonics = 100;
+  ExpectCountedAbove("two groups", Encode(SynthKind::kParts, 1500, 60, settings));
   settings.harmonics = 20;
   settings.samples_per_harmonic = 10;
-  const Mesh tangle = Tangle(4000);
+  const Mesh tangle = Tangle(2000);
   ExpectCountedAbove("volume", Encode(
                                    tangle, [&](std::uint32_t) { return tangle.positions; }, 1, settings));
 }
