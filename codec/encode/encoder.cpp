@@ -14,10 +14,10 @@
 #include "codec/encode/i_frame_encoder.h"
 #include "codec/encode/position_grid.h"
 #include "codec/encode/quality.h"
-#include "codec/encode/stream_writer.h"
 #include "codec/shape.h"
 #include "format/frame_coder.h"
 #include "format/group_structure.h"
+#include "format/stream_writer.h"
 
 namespace sac {
 namespace {

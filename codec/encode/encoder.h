@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,9 +8,9 @@
 
 #include "codec/mesh.h"
 #include "format/limits.h"
-#include "format/plane_layout.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
+#include "format/stream_writer.h"
 
 namespace sac {
 
@@ -40,14 +39,6 @@ struct EncoderSettings {
   // What the decoders it is for are ready to spend. A quality gets fewer harmonics when these would be too many;
   // what exceeds them otherwise is refused, kLimit.
   Limits limits;
-};
-
-// Bytes by what they say; they add up to the stream.
-struct StreamBytes {
-  double header = 0;  // magic, sequence header, end and index
-  double i_frame = 0;
-  std::array<double, kPlanes> planes = {};
-  double side = 0;  // rigid motion, frame types, packet framing of groups
 };
 
 // Turns frames into a stream, one at a time. Holds one group, not the clip. With low_delay a frame's bytes can be taken

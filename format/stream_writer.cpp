@@ -1,4 +1,4 @@
-#include "codec/encode/stream_writer.h"
+#include "format/stream_writer.h"
 
 #include <algorithm>
 #include <cmath>
