@@ -12,12 +12,12 @@
 #include "codec/decode/decoder.h"
 #include "codec/decode/i_frame.h"
 #include "codec/encode/encoder.h"
-#include "codec/poisson_system.h"
 #include "codec/shape.h"
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
+#include "geometry/poisson_system.h"
 
 namespace sac::bench {
 namespace {
@@ -98,7 +98,7 @@ void StartFactorization(benchmark::State& state) {
   const StreamStart start(clip);
   const Shape shape = start.MakeShape();
   for ([[maybe_unused]] auto step : state) {
-    PoissonSystem poisson(shape);
+    PoissonSystem poisson(shape.edges, shape.components, shape.masses);
     if (!poisson.SetReference(shape.positions, shape.weights)) state.SkipWithError("singular");
   }
   CountVertices(state, clip);

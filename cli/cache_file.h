@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "cli/output_file.h"
-#include "codec/mesh.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

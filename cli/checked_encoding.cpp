@@ -6,7 +6,7 @@
 #include "cli/frame_rate.h"
 #include "cli/progress.h"
 #include "cli/vertex_order.h"
-#include "codec/bounding_box.h"
+#include "geometry/bounding_box.h"
 
 namespace sac {
 

@@ -9,8 +9,8 @@
 #include "cli/cache_file.h"
 #include "cli/frame_pattern.h"
 #include "cli/output_file.h"
-#include "codec/mesh.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "codec/mesh.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

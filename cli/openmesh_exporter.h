@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/mesh.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

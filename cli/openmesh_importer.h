@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/mesh.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

@@ -2,8 +2,8 @@
 
 #include <string_view>
 
-#include "codec/mesh.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "codec/mesh.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

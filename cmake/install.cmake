@@ -3,11 +3,11 @@ include(CMakePackageConfigHelpers)
 
 # What codec/decode/decoder.h includes, and the header for C.
 set(headers
-  codec/bounding_box.h
+  geometry/bounding_box.h
   codec/decode/decoder.h
   codec/decode/lost_frames.h
   codec/decode/vertex_buffer.h
-  codec/mesh.h
+  geometry/mesh.h
   format/bytes.h
   format/limits.h
   format/sequence_header.h
@@ -20,7 +20,8 @@ install(FILES codec/decode/sac.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sac)
 
 set_target_properties(sac_decoder PROPERTIES EXPORT_NAME decoder)
 set_target_properties(sac_format PROPERTIES EXPORT_NAME format)
-set(libraries sac_decoder sac_format)
+set_target_properties(sac_geometry PROPERTIES EXPORT_NAME geometry)
+set(libraries sac_decoder sac_format sac_geometry)
 if(SAC_BUILD_SHARED)
   set_target_properties(sac_decoder_shared PROPERTIES EXPORT_NAME decoder_shared)
   list(APPEND libraries sac_decoder_shared)

@@ -12,7 +12,7 @@
 #include <utility>
 
 #include "codec/radial_functions.h"
-#include "codec/sparse_cholesky.h"
+#include "geometry/sparse_cholesky.h"
 
 namespace sac {
 namespace {

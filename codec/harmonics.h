@@ -7,10 +7,10 @@
 #include <span>
 #include <vector>
 
-#include "codec/components.h"
-#include "codec/laplacian.h"
 #include "format/harmonic_order.h"
 #include "format/status.h"
+#include "geometry/components.h"
+#include "geometry/laplacian.h"
 
 namespace sac {
 

@@ -69,24 +69,6 @@ class Cutter {
 
 }  // namespace
 
-VertexGraph BuildGraph(std::uint32_t vertices, std::span<const Triangle> triangles) {
-  VertexGraph graph;
-  graph.offsets.assign(vertices + 1, 0);
-  for (const Triangle& t : triangles) {
-    for (const std::uint32_t v : t) graph.offsets[v + 1] += 2;
-  }
-  for (std::uint32_t v = 0; v < vertices; ++v) graph.offsets[v + 1] += graph.offsets[v];
-  graph.neighbours.resize(graph.offsets[vertices]);
-  std::vector<std::uint32_t> next(graph.offsets.begin(), graph.offsets.end() - 1);
-  for (const Triangle& t : triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      graph.neighbours[next[t[k]]++] = t[(k + 1) % 3];
-      graph.neighbours[next[t[k]]++] = t[(k + 2) % 3];
-    }
-  }
-  return graph;
-}
-
 PatchOrder CutIntoPatches(std::span<const GridPosition> grid, const VertexGraph& graph,
                           std::vector<std::uint32_t> component, std::uint32_t size) {
   Cutter cutter(grid, graph, size);

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "codec/mesh.h"
+#include "geometry/edges.h"
 
 namespace sac {
 
@@ -18,14 +18,7 @@ struct PatchOrder {
 };
 
 // Cuts one component into connected patches of at most `size` vertices (spec.md 5.4): halves by position along the
-// longest axis, integers alone, then the connected pieces of what is left. `neighbours` of vertex v: those in
-// [offsets[v], offsets[v + 1]).
-struct VertexGraph {
-  std::vector<std::uint32_t> offsets;
-  std::vector<std::uint32_t> neighbours;
-};
-
-VertexGraph BuildGraph(std::uint32_t vertices, std::span<const Triangle> triangles);
+// longest axis, integers alone, then the connected pieces of what is left.
 PatchOrder CutIntoPatches(std::span<const GridPosition> grid, const VertexGraph& graph,
                           std::vector<std::uint32_t> component, std::uint32_t size);
 

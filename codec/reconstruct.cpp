@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <array>
 
-#include "codec/deformation.h"
+#include "geometry/deformation.h"
 
 namespace sac {
 namespace {
@@ -81,7 +81,7 @@ Reconstructor::Reconstructor(const Shape& shape, const SequenceHeader& header)
     : shape_(shape),
       header_(header),
       correction_unit_(static_cast<double>(header.correction_step) / kCoefficientsPerStep),
-      poisson_(shape),
+      poisson_(shape.edges, shape.components, shape.masses),
       gradients_(shape.vertices()) {
   for (const Plane p : kHarmonicPlanes) {
     fields_.emplace_back(BasisOf(shape, p), shape.layouts[p], PlaneUnits(shape, header, p));

@@ -5,11 +5,11 @@
 #include <span>
 #include <vector>
 
-#include "codec/mesh.h"
-#include "codec/poisson_system.h"
 #include "codec/shape.h"
 #include "format/prediction.h"
 #include "format/sequence_header.h"
+#include "geometry/mesh.h"
+#include "geometry/poisson_system.h"
 
 namespace sac {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "codec/sparse_cholesky.h"
+#include "geometry/sparse_cholesky.h"
 
 namespace sac {
 

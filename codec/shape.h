@@ -4,15 +4,15 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/components.h"
 #include "codec/harmonics.h"
-#include "codec/laplacian.h"
-#include "codec/mesh.h"
 #include "codec/patches.h"
 #include "format/limits.h"
 #include "format/plane_layout.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
+#include "geometry/components.h"
+#include "geometry/laplacian.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

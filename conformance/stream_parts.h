@@ -7,11 +7,11 @@
 #include <vector>
 
 #include "codec/encode/encoder.h"
-#include "codec/mesh.h"
 #include "format/frame_syntax.h"
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
 #include "format/sequence_header.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

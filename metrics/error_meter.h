@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "codec/mesh.h"
+#include "geometry/mesh.h"
 #include "metrics/kg.h"
 #include "metrics/sted.h"
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "codec/mesh.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

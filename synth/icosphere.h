@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/mesh.h"
+#include "geometry/mesh.h"
 
 namespace sac::synth {
 

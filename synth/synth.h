@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "codec/mesh.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

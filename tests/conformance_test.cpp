@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "codec/bounding_box.h"
 #include "codec/decode/decoder.h"
 #include "conformance/coefficients.h"
 #include "format/bytes.h"
 #include "format/crc32.h"
+#include "geometry/bounding_box.h"
 
 namespace sac {
 namespace {

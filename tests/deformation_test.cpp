@@ -1,4 +1,4 @@
-#include "codec/deformation.h"
+#include "geometry/deformation.h"
 
 #include <gtest/gtest.h>
 

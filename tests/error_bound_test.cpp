@@ -7,7 +7,7 @@
 #include <sstream>
 #include <string>
 
-#include "codec/bounding_box.h"
+#include "geometry/bounding_box.h"
 #include "tests/test_clips.h"
 
 namespace sac {

@@ -1,4 +1,4 @@
-#include "codec/laplacian.h"
+#include "geometry/laplacian.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <random>
 #include <set>
 
-#include "codec/components.h"
+#include "geometry/components.h"
 #include "tests/test_meshes.h"
 
 namespace sac {

@@ -1,4 +1,4 @@
-#include "codec/poisson_system.h"
+#include "geometry/poisson_system.h"
 
 #include <gtest/gtest.h>
 
@@ -24,7 +24,7 @@ Eigen::RowVector3d Centroid(const Shape& shape, const Component& c, const Positi
 TEST(PoissonSystem, ReproducesTheReference) {
   System s;
   Make(PartsMesh(), {2, 2, 2, 1}, s);
-  PoissonSystem poisson(s.shape);
+  PoissonSystem poisson(s.shape.edges, s.shape.components, s.shape.masses);
   ASSERT_TRUE(poisson.SetReference(s.shape.positions, s.shape.weights));
   const DeformationGradients still(s.shape.vertices(), Eigen::Matrix3d::Identity());
   EXPECT_LT((poisson.Solve(still) - s.shape.positions).cwiseAbs().maxCoeff(), 1e-10);
@@ -33,7 +33,7 @@ TEST(PoissonSystem, ReproducesTheReference) {
 TEST(PoissonSystem, TurnsEachComponentAboutItsCentroid) {
   System s;
   Make(PartsMesh(), {2, 2, 2, 1}, s);
-  PoissonSystem poisson(s.shape);
+  PoissonSystem poisson(s.shape.edges, s.shape.components, s.shape.masses);
   ASSERT_TRUE(poisson.SetReference(s.shape.positions, s.shape.weights));
   // Linear maps of their own: a rotation, a stretch, and anything.
   Eigen::Matrix3d any;
@@ -54,7 +54,7 @@ TEST(PoissonSystem, TurnsEachComponentAboutItsCentroid) {
 TEST(PoissonSystem, SolvesItsNormalEquations) {
   System s;
   Make(PartsMesh(), {2, 2, 2, 1}, s);
-  PoissonSystem poisson(s.shape);
+  PoissonSystem poisson(s.shape.edges, s.shape.components, s.shape.masses);
   ASSERT_TRUE(poisson.SetReference(s.shape.positions, s.shape.weights));
   std::mt19937 random(1);
   DeformationGradients gradients(s.shape.vertices());
@@ -80,7 +80,7 @@ TEST(PoissonSystem, SolvesItsNormalEquations) {
 TEST(PoissonSystem, TakesAnotherReference) {
   System s;
   Make(TubeMesh(6, 8), {2}, s);
-  PoissonSystem poisson(s.shape);
+  PoissonSystem poisson(s.shape.edges, s.shape.components, s.shape.masses);
   ASSERT_TRUE(poisson.SetReference(s.shape.positions, s.shape.weights));
   const PositionMatrix bent = ToMatrix(BentTube(TubeMesh(6, 8), 1));
   ASSERT_TRUE(poisson.SetReference(bent, CotangentWeights(bent, s.shape.triangles, s.shape.edges)));
@@ -95,7 +95,7 @@ TEST(PoissonSystem, OfAMeshWithoutAreaIsSolvable) {
   for (Vec3f& p : line.positions) p = {0, 0, p[2]};
   System s;
   Make(line, {2}, s);
-  PoissonSystem poisson(s.shape);
+  PoissonSystem poisson(s.shape.edges, s.shape.components, s.shape.masses);
   ASSERT_TRUE(poisson.SetReference(s.shape.positions, s.shape.weights));
   const DeformationGradients twice(s.shape.vertices(), 2 * Eigen::Matrix3d::Identity());
   const PositionMatrix x = poisson.Solve(twice);

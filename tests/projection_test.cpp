@@ -2,8 +2,8 @@
 
 #include <gtest/gtest.h>
 
-#include "codec/encode/triangle_fields.h"
 #include "format/harmonic_order.h"
+#include "geometry/triangle_fields.h"
 #include "tests/test_meshes.h"
 
 namespace sac {

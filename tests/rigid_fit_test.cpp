@@ -1,4 +1,4 @@
-#include "codec/encode/rigid_fit.h"
+#include "geometry/rigid_fit.h"
 
 #include <gtest/gtest.h>
 

@@ -11,9 +11,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/components.h"
 #include "codec/decode/decoder.h"
-#include "codec/deformation.h"
 #include "codec/patches.h"
 #include "codec/radial_functions.h"
 #include "format/bytes.h"
@@ -29,6 +27,8 @@
 #include "format/prediction.h"
 #include "format/range_coder.h"
 #include "format/stream_index.h"
+#include "geometry/components.h"
+#include "geometry/deformation.h"
 #include "tests/spec_examples.h"
 
 namespace sac {

@@ -11,10 +11,10 @@
 #include <random>
 #include <vector>
 
-#include "codec/components.h"
-#include "codec/laplacian.h"
-#include "codec/mesh.h"
 #include "codec/shape.h"
+#include "geometry/components.h"
+#include "geometry/laplacian.h"
+#include "geometry/mesh.h"
 #include "synth/icosphere.h"
 
 namespace sac {

@@ -1,11 +1,11 @@
-#include "codec/encode/triangle_fields.h"
+#include "geometry/triangle_fields.h"
 
 #include <gtest/gtest.h>
 
 #include <Eigen/LU>
 #include <Eigen/SVD>
 
-#include "codec/deformation.h"
+#include "geometry/deformation.h"
 #include "tests/test_meshes.h"
 
 namespace sac {

@@ -6,6 +6,7 @@
 #include <cstring>
 #include <random>
 
+#include "geometry/normals.h"
 #include "tests/test_clips.h"
 
 namespace sac {

@@ -4,9 +4,9 @@
 #include <vector>
 
 #include "bench/peers/peer.h"
-#include "codec/mesh.h"
 #include "format/bytes.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac::bench {
 

@@ -7,8 +7,8 @@
 #include <limits>
 
 #include "cli/output_file.h"
-#include "codec/bounding_box.h"
 #include "format/bytes.h"
+#include "geometry/bounding_box.h"
 
 namespace sac::bench {
 namespace {

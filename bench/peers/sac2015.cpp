@@ -21,8 +21,8 @@
 #include "bench/peers/quantized_levels.h"
 #include "bench/peers/spectral_frames.h"
 #include "bench/peers/step_clock.h"
-#include "codec/deformation.h"
-#include "codec/encode/triangle_fields.h"
+#include "geometry/deformation.h"
+#include "geometry/triangle_fields.h"
 
 namespace sac::bench {
 namespace {

@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "codec/components.h"
-#include "codec/laplacian.h"
-#include "codec/mesh.h"
 #include "format/status.h"
+#include "geometry/components.h"
+#include "geometry/laplacian.h"
+#include "geometry/mesh.h"
 
 namespace sac::bench {
 

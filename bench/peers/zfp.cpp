@@ -2,7 +2,7 @@
 #include <zfp.h>
 
 #include "bench/peers/array_peer.h"
-#include "codec/bounding_box.h"
+#include "geometry/bounding_box.h"
 
 namespace sac::bench {
 namespace {

@@ -10,7 +10,7 @@
 #include "cli/frame_pattern.h"
 #include "cli/mesh_file.h"
 #include "cli/sweep/content_key.h"
-#include "codec/bounding_box.h"
+#include "geometry/bounding_box.h"
 
 namespace sac {
 namespace {

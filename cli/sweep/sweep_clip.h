@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cli/sweep/display_mesh.h"
-#include "codec/mesh.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

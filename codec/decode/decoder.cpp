@@ -7,7 +7,6 @@
 #include <string>
 #include <utility>
 
-#include "codec/bounding_box.h"
 #include "codec/decode/frame_source.h"
 #include "codec/decode/group_parser.h"
 #include "codec/decode/i_frame.h"
@@ -21,6 +20,7 @@
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
 #include "format/stream_index.h"
+#include "geometry/bounding_box.h"
 
 namespace sac {
 

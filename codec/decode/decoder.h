@@ -6,13 +6,13 @@
 #include <span>
 #include <vector>
 
-#include "codec/bounding_box.h"
 #include "codec/decode/lost_frames.h"
 #include "codec/decode/vertex_buffer.h"
-#include "codec/mesh.h"
 #include "format/limits.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
+#include "geometry/bounding_box.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

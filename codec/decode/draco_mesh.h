@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "codec/mesh.h"
 #include "codec/shape.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

@@ -6,11 +6,11 @@
 #include <vector>
 
 #include "codec/decode/group_parser.h"
-#include "codec/mesh.h"
 #include "codec/reconstruct.h"
 #include "codec/shape.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "codec/decode/draco_mesh.h"
-#include "codec/mesh.h"
 #include "codec/shape.h"
 #include "format/i_frame_syntax.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

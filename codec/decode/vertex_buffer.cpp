@@ -5,6 +5,8 @@
 #include <cstring>
 #include <string>
 
+#include "geometry/normals.h"
+
 namespace sac {
 namespace {
 
@@ -63,30 +65,6 @@ void FillBuffers(const Positions& positions, const std::vector<Triangle>& triang
     Fill(VertexNormals(positions, triangles), buffers.normals,
          [](double x, std::size_t) { return std::lround(x * 32767); });
   }
-}
-
-std::vector<Vec3f> VertexNormals(const Positions& positions, const std::vector<Triangle>& triangles) {
-  std::vector<std::array<double, 3>> sums(positions.size());
-  for (const Triangle& t : triangles) {
-    std::array<double, 3> u, w;
-    for (std::size_t a = 0; a < 3; ++a) {
-      const auto origin = static_cast<double>(positions[t[0]][a]);
-      u[a] = static_cast<double>(positions[t[1]][a]) - origin;
-      w[a] = static_cast<double>(positions[t[2]][a]) - origin;
-    }
-    for (std::size_t a = 0; a < 3; ++a) {  // twice the area long
-      const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
-      const double n = u[b] * w[c] - u[c] * w[b];
-      for (const std::uint32_t corner : t) sums[corner][a] += n;
-    }
-  }
-  std::vector<Vec3f> normals(positions.size());
-  for (std::size_t v = 0; v < sums.size(); ++v) {
-    const double length = std::hypot(sums[v][0], sums[v][1], sums[v][2]);
-    if (!(length > 0) || !std::isfinite(length)) continue;
-    for (std::size_t a = 0; a < 3; ++a) normals[v][a] = static_cast<float>(sums[v][a] / length);
-  }
-  return normals;
 }
 
 }  // namespace sac

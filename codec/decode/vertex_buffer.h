@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/bounding_box.h"
-#include "codec/mesh.h"
 #include "format/status.h"
+#include "geometry/bounding_box.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 
@@ -36,8 +36,5 @@ Status CheckBuffers(const FrameBuffers& buffers, std::size_t vertices);
 // Fills what is wanted. `box`: of the positions.
 void FillBuffers(const Positions& positions, const std::vector<Triangle>& triangles, const Box& box,
                  const FrameBuffers& buffers);
-
-// Area-weighted vertex normals of length 1; zero where a vertex has no area around it.
-std::vector<Vec3f> VertexNormals(const Positions& positions, const std::vector<Triangle>& triangles);
 
 }  // namespace sac

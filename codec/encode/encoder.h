@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
-#include "codec/mesh.h"
 #include "format/limits.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
 #include "format/stream_writer.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "codec/bounding_box.h"
+#include "geometry/bounding_box.h"
 
 namespace sac {
 namespace {

@@ -2,8 +2,8 @@
 
 #include <Eigen/Core>
 
-#include "codec/laplacian.h"
-#include "codec/mesh.h"
+#include "geometry/laplacian.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

@@ -11,7 +11,7 @@
 #include "codec/encode/error_bound.h"
 #include "codec/encode/quantizer.h"
 #include "codec/encode/reference_search.h"
-#include "codec/encode/rigid_fit.h"
+#include "geometry/rigid_fit.h"
 
 namespace sac {
 namespace {

@@ -7,13 +7,13 @@
 #include <vector>
 
 #include "codec/encode/projection.h"
-#include "codec/encode/triangle_fields.h"
 #include "codec/reconstruct.h"
 #include "codec/shape.h"
 #include "format/frame_syntax.h"
 #include "format/prediction.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
+#include "geometry/triangle_fields.h"
 
 namespace sac {
 

@@ -5,11 +5,11 @@
 #include <vector>
 
 #include "codec/decode/i_frame.h"
-#include "codec/mesh.h"
 #include "codec/position_predictor.h"
 #include "format/i_frame_syntax.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

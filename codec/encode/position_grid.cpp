@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdint>
 
-#include "codec/bounding_box.h"
+#include "geometry/bounding_box.h"
 
 namespace sac {
 namespace {

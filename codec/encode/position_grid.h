@@ -1,9 +1,9 @@
 #pragma once
 
 #include "codec/encode/i_frame_encoder.h"
-#include "codec/mesh.h"
 #include "format/sequence_header.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

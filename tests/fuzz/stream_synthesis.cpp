@@ -5,7 +5,6 @@
 #include <cstddef>
 #include <utility>
 
-#include "codec/components.h"
 #include "codec/decode/draco_mesh.h"
 #include "codec/decode/i_frame.h"
 #include "codec/shape.h"
@@ -15,6 +14,7 @@
 #include "format/group_syntax.h"
 #include "format/i_frame_syntax.h"
 #include "format/range_coder.h"
+#include "geometry/components.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/join_packets.h"
 

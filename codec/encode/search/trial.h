@@ -4,8 +4,8 @@
 #include <functional>
 
 #include "codec/encode/encoder.h"
-#include "codec/mesh.h"
 #include "format/status.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

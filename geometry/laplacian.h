@@ -7,28 +7,13 @@
 #include <span>
 #include <vector>
 
-#include "codec/mesh.h"
+#include "geometry/edges.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 
 // One column an axis, one row a vertex.
 using PositionMatrix = Eigen::Matrix<double, Eigen::Dynamic, 3>;
-
-// The undirected edges of a triangle mesh, each once, sorted; degenerate triangles' edges included, loops left out.
-struct EdgeList {
-  std::vector<std::array<std::uint32_t, 2>> ends;         // smaller vertex first
-  std::vector<std::array<std::uint32_t, 3>> of_triangle;  // edge opposite corner k of triangle j; kNone for a loop
-  static constexpr std::uint32_t kNone = 0xffffffffu;
-};
-
-EdgeList BuildEdges(std::span<const Triangle> triangles);
-
-// The edges, as a range of indices, whose smaller vertex is in [first, first + count).
-struct EdgeRange {
-  std::size_t begin;
-  std::size_t count;
-};
-EdgeRange EdgesOf(const EdgeList& edges, std::uint32_t first, std::uint32_t count);
 
 // Cotangent weight of each edge (spec.md 6.4.1): half the sum of the cotangents opposite it, at least kMinWeight, so
 // that every connected component's Laplacian has exactly one zero eigenvalue whatever the triangles are like.

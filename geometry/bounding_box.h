@@ -2,7 +2,7 @@
 
 #include <array>
 
-#include "codec/mesh.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-#include "codec/laplacian.h"
+#include "geometry/laplacian.h"
 
 namespace sac {
 

@@ -1,6 +1,6 @@
-#include "codec/encode/rigid_fit.h"
+#include "geometry/rigid_fit.h"
 
-#include "codec/encode/triangle_fields.h"
+#include "geometry/triangle_fields.h"
 
 namespace sac {
 

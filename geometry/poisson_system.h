@@ -4,8 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "codec/shape.h"
-#include "codec/sparse_cholesky.h"
+#include "geometry/components.h"
+#include "geometry/laplacian.h"
+#include "geometry/sparse_cholesky.h"
 
 namespace sac {
 
@@ -16,8 +17,9 @@ using DeformationGradients = std::vector<Eigen::Matrix3d>;  // one a vertex
 // which is the Poisson problem of Sumner and Popovic 2004 with the deformation gradients J at vertices.
 class PoissonSystem {
  public:
-  // `shape` must outlive the system.
-  explicit PoissonSystem(const Shape& shape);
+  // `edges` and `components` are the mesh's; the vertices of a component are consecutive. `masses`: the area share of
+  // each vertex. All must outlive the system.
+  PoissonSystem(const EdgeList& edges, std::span<const Component> components, const Eigen::VectorXd& masses);
 
   // Takes `reference`, with its cotangent weights, as y. False when the factorization fails.
   bool SetReference(const PositionMatrix& reference, std::vector<double> weights);
@@ -26,7 +28,9 @@ class PoissonSystem {
   const PositionMatrix& Solve(const DeformationGradients& gradients);
 
  private:
-  const Shape& shape_;
+  const EdgeList& edges_;
+  std::span<const Component> components_;
+  const Eigen::VectorXd& masses_;
   PositionMatrix reference_;
   std::vector<double> weights_;
   Eigen::SparseMatrix<double> matrix_;

@@ -1,37 +1,10 @@
-#include "codec/laplacian.h"
+#include "geometry/laplacian.h"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
 
 namespace sac {
-
-EdgeList BuildEdges(std::span<const Triangle> triangles) {
-  EdgeList edges;
-  edges.ends.reserve(3 * triangles.size());
-  const auto edge = [&](std::size_t j, std::size_t k) {
-    const std::uint32_t a = triangles[j][(k + 1) % 3], b = triangles[j][(k + 2) % 3];
-    return std::array<std::uint32_t, 2>{std::min(a, b), std::max(a, b)};
-  };
-  for (std::size_t j = 0; j < triangles.size(); ++j) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      if (const auto e = edge(j, k); e[0] != e[1]) edges.ends.push_back(e);
-    }
-  }
-  std::sort(edges.ends.begin(), edges.ends.end());
-  edges.ends.erase(std::unique(edges.ends.begin(), edges.ends.end()), edges.ends.end());
-  edges.of_triangle.resize(triangles.size());
-  for (std::size_t j = 0; j < triangles.size(); ++j) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto e = edge(j, k);
-      edges.of_triangle[j][k] =
-          e[0] == e[1] ? EdgeList::kNone
-                       : static_cast<std::uint32_t>(std::lower_bound(edges.ends.begin(), edges.ends.end(), e) -
-                                                    edges.ends.begin());
-    }
-  }
-  return edges;
-}
 
 std::vector<double> CotangentWeights(const PositionMatrix& positions, std::span<const Triangle> triangles,
                                      const EdgeList& edges) {
@@ -64,14 +37,6 @@ Eigen::VectorXd VertexMasses(const PositionMatrix& positions, std::span<const Tr
   const double mean = masses.mean();
   masses = mean > 0 ? masses.cwiseMax(1e-3 * mean).eval() : Eigen::VectorXd::Ones(positions.rows()).eval();
   return masses / masses.sum();
-}
-
-EdgeRange EdgesOf(const EdgeList& edges, std::uint32_t first, std::uint32_t count) {
-  const auto at = [&](std::uint32_t v) {
-    return std::lower_bound(edges.ends.begin(), edges.ends.end(), std::array<std::uint32_t, 2>{v, 0});
-  };
-  const auto begin = at(first), end = at(first + count);
-  return {static_cast<std::size_t>(begin - edges.ends.begin()), static_cast<std::size_t>(end - begin)};
 }
 
 Eigen::SparseMatrix<double> LaplacianMatrix(std::span<const std::array<std::uint32_t, 2>> ends,

@@ -1,4 +1,4 @@
-#include "codec/encode/triangle_fields.h"
+#include "geometry/triangle_fields.h"
 
 #include <Eigen/Geometry>
 #include <Eigen/LU>

@@ -1,4 +1,4 @@
-#include "codec/components.h"
+#include "geometry/components.h"
 
 #include <numeric>
 

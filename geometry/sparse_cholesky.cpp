@@ -1,4 +1,4 @@
-#include "codec/sparse_cholesky.h"
+#include "geometry/sparse_cholesky.h"
 
 #include <algorithm>
 #include <vector>

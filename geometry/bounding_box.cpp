@@ -1,4 +1,4 @@
-#include "codec/bounding_box.h"
+#include "geometry/bounding_box.h"
 
 #include <algorithm>
 #include <cmath>

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "codec/laplacian.h"
-#include "codec/mesh.h"
+#include "geometry/laplacian.h"
+#include "geometry/mesh.h"
 
 namespace sac {
 

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "geometry/mesh.h"
+
+namespace sac {
+
+// The undirected edges of a triangle mesh, each once, sorted; degenerate triangles' edges included, loops left out.
+struct EdgeList {
+  std::vector<std::array<std::uint32_t, 2>> ends;         // smaller vertex first
+  std::vector<std::array<std::uint32_t, 3>> of_triangle;  // edge opposite corner k of triangle j; kNone for a loop
+  static constexpr std::uint32_t kNone = 0xffffffffu;
+};
+
+EdgeList BuildEdges(std::span<const Triangle> triangles);
+
+// The edges, as a range of indices, whose smaller vertex is in [first, first + count).
+struct EdgeRange {
+  std::size_t begin;
+  std::size_t count;
+};
+EdgeRange EdgesOf(const EdgeList& edges, std::uint32_t first, std::uint32_t count);
+
+// Which vertices an edge joins: vertex v has neighbours[offsets[v]] to neighbours[offsets[v + 1] - 1].
+struct VertexGraph {
+  std::vector<std::uint32_t> offsets;
+  std::vector<std::uint32_t> neighbours;
+};
+// The graph of the edges of `triangles`, whose indices are below `vertices`.
+VertexGraph BuildGraph(std::uint32_t vertices, std::span<const Triangle> triangles);
+
+}  // namespace sac
