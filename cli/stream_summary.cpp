@@ -2,7 +2,7 @@
 
 #include <span>
 
-#include "codec/decode/draco_mesh.h"
+#include "codec/draco_mesh.h"
 #include "format/group_syntax.h"
 #include "format/i_frame_syntax.h"
 #include "format/limits.h"

@@ -4,8 +4,8 @@
 #include <utility>
 #include <vector>
 
-#include "codec/decode/draco_mesh.h"
-#include "codec/decode/i_frame.h"
+#include "codec/draco_mesh.h"
+#include "codec/i_frame.h"
 #include "format/bytes.h"
 #include "format/crc32.h"
 #include "format/frame_coder.h"

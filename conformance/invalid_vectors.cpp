@@ -7,7 +7,7 @@
 #include <limits>
 #include <utility>
 
-#include "codec/decode/draco_mesh.h"
+#include "codec/draco_mesh.h"
 #include "codec/encode/position_search.h"
 #include "format/bytes.h"
 #include "format/group_syntax.h"

@@ -6,8 +6,8 @@
 #include <optional>
 #include <utility>
 
-#include "codec/decode/draco_mesh.h"
-#include "codec/decode/i_frame.h"
+#include "codec/draco_mesh.h"
+#include "codec/i_frame.h"
 #include "codec/shape.h"
 #include "format/bytes.h"
 #include "format/frame_coder.h"

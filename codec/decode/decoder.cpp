@@ -9,10 +9,10 @@
 
 #include "codec/decode/frame_source.h"
 #include "codec/decode/group_parser.h"
-#include "codec/decode/i_frame.h"
 #include "codec/decode/lost_frames.h"
 #include "codec/decode/packet_source.h"
 #include "codec/decode/seek_table.h"
+#include "codec/i_frame.h"
 #include "codec/reconstruct.h"
 #include "codec/shape.h"
 #include "format/bytes.h"

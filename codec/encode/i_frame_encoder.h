@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/decode/i_frame.h"
+#include "codec/i_frame.h"
 #include "codec/position_predictor.h"
 #include "format/i_frame_syntax.h"
 #include "format/sequence_header.h"

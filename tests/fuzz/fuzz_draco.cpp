@@ -1,7 +1,7 @@
 // What stands before Draco, and Draco: an I-frame's mesh in a stream that allows it 2,000 triangles.
 #include <algorithm>
 
-#include "codec/decode/draco_mesh.h"
+#include "codec/draco_mesh.h"
 #include "tests/fuzz/fuzz_target.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <utility>
 
-#include "codec/decode/draco_mesh.h"
-#include "codec/decode/i_frame.h"
+#include "codec/draco_mesh.h"
+#include "codec/i_frame.h"
 #include "codec/shape.h"
 #include "format/bytes.h"
 #include "format/frame_coder.h"

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "codec/decode/draco_mesh.h"
+#include "codec/draco_mesh.h"
 #include "codec/shape.h"
 #include "format/i_frame_syntax.h"
 #include "format/sequence_header.h"

@@ -1,4 +1,4 @@
-#include "codec/decode/draco_decoder.h"
+#include "codec/draco_decoder.h"
 
 #include <draco/core/varint_decoding.h>
 

@@ -1,4 +1,4 @@
-#include "codec/decode/draco_mesh.h"
+#include "codec/draco_mesh.h"
 
 #include <draco/compression/config/decoder_options.h>
 
@@ -6,7 +6,7 @@
 #include <stdexcept>
 #include <string>
 
-#include "codec/decode/draco_decoder.h"
+#include "codec/draco_decoder.h"
 #include "format/bytes.h"
 
 namespace sac {

@@ -1,4 +1,4 @@
-#include "codec/decode/i_frame.h"
+#include "codec/i_frame.h"
 
 #include <algorithm>
 #include <utility>
