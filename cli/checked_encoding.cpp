@@ -3,9 +3,9 @@
 #include <utility>
 
 #include "cli/decoded_frames.h"
-#include "cli/frame_rate.h"
 #include "cli/progress.h"
-#include "cli/vertex_order.h"
+#include "files/frame_rate.h"
+#include "files/vertex_order.h"
 #include "geometry/bounding_box.h"
 
 namespace sac {

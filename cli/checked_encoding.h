@@ -8,11 +8,11 @@
 #include <string>
 #include <vector>
 
-#include "cli/clip_input.h"
 #include "cli/error_option.h"
-#include "cli/output_file.h"
 #include "codec/encode/encoder.h"
 #include "codec/encode/search/target_search.h"
+#include "files/clip_input.h"
+#include "files/output_file.h"
 #include "format/status.h"
 #include "metrics/error_meter.h"
 

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/clip_input.h"
 #include "cli/commands.h"
 #include "cli/distortion_report.h"
 #include "cli/progress.h"
+#include "files/clip_input.h"
 #include "metrics/error_meter.h"
 
 namespace sac {

@@ -10,13 +10,13 @@
 #include <string_view>
 #include <utility>
 
-#include "cli/clip_output.h"
 #include "cli/commands.h"
 #include "cli/decoded_frames.h"
-#include "cli/overwriting.h"
 #include "cli/progress.h"
-#include "cli/stream_input.h"
-#include "cli/vertex_order.h"
+#include "files/clip_output.h"
+#include "files/overwriting.h"
+#include "files/stream_input.h"
+#include "files/vertex_order.h"
 
 namespace sac {
 namespace {

@@ -9,15 +9,15 @@
 #include <utility>
 #include <vector>
 
-#include "cli/cache_file.h"
 #include "cli/checked_encoding.h"
 #include "cli/commands.h"
 #include "cli/distortion_report.h"
 #include "cli/error_option.h"
-#include "cli/frame_rate.h"
-#include "cli/mesh_file.h"
 #include "cli/number_option.h"
-#include "cli/overwriting.h"
+#include "files/cache_file.h"
+#include "files/frame_rate.h"
+#include "files/mesh_file.h"
+#include "files/overwriting.h"
 
 namespace sac {
 namespace {

@@ -8,8 +8,8 @@
 
 #include "cli/commands.h"
 #include "cli/distortion_report.h"
-#include "cli/stream_input.h"
 #include "cli/stream_summary.h"
+#include "files/stream_input.h"
 
 namespace sac {
 namespace {

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "cli/commands.h"
-#include "cli/temporary_files.h"
+#include "files/temporary_files.h"
 #include "format/sequence_header.h"
 
 namespace sac {

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/stream_input.h"
+#include "files/stream_input.h"
 #include "format/packet.h"
 #include "format/sequence_header.h"
 #include "format/status.h"

@@ -4,10 +4,10 @@
 #include <string>
 #include <vector>
 
-#include "cli/clip_output.h"
 #include "cli/commands.h"
 #include "cli/number_option.h"
 #include "cli/progress.h"
+#include "files/clip_output.h"
 #include "synth/synth.h"
 
 namespace sac {

@@ -5,7 +5,7 @@
 #include "cli/commands.h"
 #include "cli/decoded_frames.h"
 #include "cli/progress.h"
-#include "cli/stream_input.h"
+#include "files/stream_input.h"
 
 namespace sac {
 namespace {

@@ -1,4 +1,4 @@
-#include "cli/cache_file.h"
+#include "files/cache_file.h"
 
 #include <gtest/gtest.h>
 

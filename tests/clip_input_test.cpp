@@ -1,10 +1,10 @@
-#include "cli/clip_input.h"
+#include "files/clip_input.h"
 
 #include <gtest/gtest.h>
 
 #include <limits>
 
-#include "cli/frame_pattern.h"
+#include "files/frame_pattern.h"
 #include "tests/test_directory.h"
 
 namespace sac {

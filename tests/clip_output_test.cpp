@@ -1,4 +1,4 @@
-#include "cli/clip_output.h"
+#include "files/clip_output.h"
 
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -6,8 +6,8 @@
 
 #include <csignal>
 
-#include "cli/clip_input.h"
-#include "cli/mesh_file.h"
+#include "files/clip_input.h"
+#include "files/mesh_file.h"
 #include "tests/test_directory.h"
 
 namespace sac {

@@ -1,4 +1,4 @@
-#include "cli/mesh_file.h"
+#include "files/mesh_file.h"
 
 #include <gtest/gtest.h>
 

@@ -7,7 +7,7 @@
 #include <iterator>
 #include <string>
 
-#include "cli/temporary_directory.h"
+#include "files/temporary_directory.h"
 
 namespace sac {
 

@@ -6,7 +6,7 @@
 #include <cstring>
 #include <limits>
 
-#include "cli/output_file.h"
+#include "files/output_file.h"
 #include "format/bytes.h"
 #include "geometry/bounding_box.h"
 

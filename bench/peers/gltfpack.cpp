@@ -11,7 +11,7 @@
 #include "bench/peers/gltf_file.h"
 #include "bench/peers/peer.h"
 #include "cli/sweep/child_process.h"
-#include "cli/temporary_directory.h"
+#include "files/temporary_directory.h"
 
 namespace sac::bench {
 namespace {

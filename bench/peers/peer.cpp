@@ -7,11 +7,11 @@
 #include <memory>
 #include <nlohmann/json.hpp>
 
-#include "cli/cache_file.h"
-#include "cli/clip_input.h"
-#include "cli/output_file.h"
-#include "cli/stream_input.h"
-#include "cli/vertex_order.h"
+#include "files/cache_file.h"
+#include "files/clip_input.h"
+#include "files/output_file.h"
+#include "files/stream_input.h"
+#include "files/vertex_order.h"
 
 namespace sac::bench {
 namespace {

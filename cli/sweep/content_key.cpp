@@ -8,7 +8,7 @@
 #include <new>
 #include <span>
 
-#include "cli/stream_input.h"
+#include "files/stream_input.h"
 
 namespace sac {
 

@@ -5,7 +5,7 @@
 #include <memory>
 #include <unordered_map>
 
-#include "cli/cache_file.h"
+#include "files/cache_file.h"
 
 namespace sac {
 namespace {

@@ -5,7 +5,7 @@
 #include <iterator>
 #include <limits>
 
-#include "cli/output_file.h"
+#include "files/output_file.h"
 
 namespace sac {
 namespace {

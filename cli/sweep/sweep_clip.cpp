@@ -5,11 +5,11 @@
 #include <filesystem>
 #include <memory>
 
-#include "cli/cache_file.h"
-#include "cli/clip_input.h"
-#include "cli/frame_pattern.h"
-#include "cli/mesh_file.h"
 #include "cli/sweep/content_key.h"
+#include "files/cache_file.h"
+#include "files/clip_input.h"
+#include "files/frame_pattern.h"
+#include "files/mesh_file.h"
 #include "geometry/bounding_box.h"
 
 namespace sac {

@@ -8,10 +8,10 @@
 #include <sstream>
 
 #include "cli/distortion_report.h"
-#include "cli/output_file.h"
 #include "cli/sweep/bd_rate.h"
 #include "cli/sweep/report_page.h"
 #include "cli/sweep/result_file.h"
+#include "files/output_file.h"
 
 namespace sac {
 namespace {

@@ -7,10 +7,10 @@
 #include <thread>
 
 #include "cli/distortion_report.h"
-#include "cli/output_file.h"
 #include "cli/progress.h"
 #include "cli/sweep/content_key.h"
 #include "cli/sweep/result_file.h"
+#include "files/output_file.h"
 
 namespace sac {
 namespace {

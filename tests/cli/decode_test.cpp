@@ -3,8 +3,8 @@
 #include <filesystem>
 #include <set>
 
-#include "cli/cache_file.h"
-#include "cli/mesh_file.h"
+#include "files/cache_file.h"
+#include "files/mesh_file.h"
 #include "tests/cli/sac_command.h"
 
 namespace sac {

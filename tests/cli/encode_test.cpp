@@ -5,7 +5,7 @@
 #include <numeric>
 #include <sstream>
 
-#include "cli/cache_file.h"
+#include "files/cache_file.h"
 #include "tests/cli/sac_command.h"
 
 namespace sac {

@@ -1,4 +1,4 @@
-#include "cli/frame_rate.h"
+#include "files/frame_rate.h"
 
 #include <algorithm>
 #include <charconv>

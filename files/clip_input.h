@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/cache_file.h"
+#include "files/cache_file.h"
 #include "format/status.h"
 #include "geometry/mesh.h"
 

@@ -1,4 +1,4 @@
-#include "cli/frame_pattern.h"
+#include "files/frame_pattern.h"
 
 #include <algorithm>
 #include <charconv>

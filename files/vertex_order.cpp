@@ -1,10 +1,10 @@
-#include "cli/vertex_order.h"
+#include "files/vertex_order.h"
 
 #include <span>
 #include <string_view>
 
-#include "cli/stream_input.h"
-#include "cli/text_scan.h"
+#include "files/stream_input.h"
+#include "files/text_scan.h"
 
 namespace sac {
 namespace {

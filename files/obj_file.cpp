@@ -1,4 +1,4 @@
-#include "cli/obj_file.h"
+#include "files/obj_file.h"
 
 #include <algorithm>
 #include <array>
@@ -8,8 +8,8 @@
 #include <optional>
 #include <vector>
 
-#include "cli/text_scan.h"
-#include "cli/uv_table.h"
+#include "files/text_scan.h"
+#include "files/uv_table.h"
 
 namespace sac {
 namespace {

@@ -1,7 +1,7 @@
 #include <string>
 
-#include "cli/openmesh_input.h"
-#include "cli/text_scan.h"
+#include "files/openmesh_input.h"
+#include "files/text_scan.h"
 
 namespace sac {
 

@@ -1,4 +1,4 @@
-#include "cli/mesh_file.h"
+#include "files/mesh_file.h"
 
 #include <OpenMesh/Core/IO/reader/OFFReader.hh>
 #include <OpenMesh/Core/IO/reader/OMReader.hh>
@@ -16,12 +16,12 @@
 #include <locale>
 #include <sstream>
 
-#include "cli/obj_file.h"
-#include "cli/openmesh_exporter.h"
-#include "cli/openmesh_importer.h"
-#include "cli/openmesh_input.h"
-#include "cli/output_file.h"
-#include "cli/stl_file.h"
+#include "files/obj_file.h"
+#include "files/openmesh_exporter.h"
+#include "files/openmesh_importer.h"
+#include "files/openmesh_input.h"
+#include "files/output_file.h"
+#include "files/stl_file.h"
 
 namespace sac {
 namespace {

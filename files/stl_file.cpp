@@ -1,4 +1,4 @@
-#include "cli/stl_file.h"
+#include "files/stl_file.h"
 
 #include <array>
 #include <bit>
@@ -6,8 +6,8 @@
 #include <string>
 #include <unordered_map>
 
-#include "cli/byte_order.h"
-#include "cli/text_scan.h"
+#include "files/byte_order.h"
+#include "files/text_scan.h"
 
 namespace sac {
 namespace {

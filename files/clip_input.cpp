@@ -1,12 +1,12 @@
-#include "cli/clip_input.h"
+#include "files/clip_input.h"
 
 #include <cmath>
 #include <filesystem>
 #include <limits>
 #include <system_error>
 
-#include "cli/frame_pattern.h"
-#include "cli/mesh_file.h"
+#include "files/frame_pattern.h"
+#include "files/mesh_file.h"
 
 namespace sac {
 namespace {

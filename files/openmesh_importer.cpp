@@ -1,10 +1,10 @@
-#include "cli/openmesh_importer.h"
+#include "files/openmesh_importer.h"
 
 #include <algorithm>
 #include <cmath>
 #include <string>
 
-#include "cli/uv_table.h"
+#include "files/uv_table.h"
 
 namespace sac {
 

@@ -1,9 +1,9 @@
-#include "cli/clip_output.h"
+#include "files/clip_output.h"
 
 #include <filesystem>
 #include <utility>
 
-#include "cli/mesh_file.h"
+#include "files/mesh_file.h"
 
 namespace sac {
 

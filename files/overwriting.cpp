@@ -1,4 +1,4 @@
-#include "cli/overwriting.h"
+#include "files/overwriting.h"
 
 #include <sys/stat.h>
 #include <unistd.h>
@@ -6,8 +6,8 @@
 #include <filesystem>
 #include <system_error>
 
-#include "cli/cache_file.h"
-#include "cli/frame_pattern.h"
+#include "files/cache_file.h"
+#include "files/frame_pattern.h"
 
 namespace sac {
 namespace {

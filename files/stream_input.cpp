@@ -1,4 +1,4 @@
-#include "cli/stream_input.h"
+#include "files/stream_input.h"
 
 #include <fcntl.h>
 #include <unistd.h>

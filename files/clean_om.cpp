@@ -2,8 +2,8 @@
 #include <cstdint>
 #include <string>
 
-#include "cli/byte_order.h"
-#include "cli/openmesh_input.h"
+#include "files/byte_order.h"
+#include "files/openmesh_input.h"
 
 namespace sac {
 namespace {

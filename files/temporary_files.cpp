@@ -1,4 +1,4 @@
-#include "cli/temporary_files.h"
+#include "files/temporary_files.h"
 
 #include <fcntl.h>
 #include <pthread.h>

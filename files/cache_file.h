@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/output_file.h"
+#include "files/output_file.h"
 #include "format/status.h"
 #include "geometry/mesh.h"
 

@@ -6,9 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/cache_file.h"
-#include "cli/frame_pattern.h"
-#include "cli/output_file.h"
+#include "files/cache_file.h"
+#include "files/frame_pattern.h"
+#include "files/output_file.h"
 #include "format/status.h"
 #include "geometry/mesh.h"
 

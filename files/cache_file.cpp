@@ -1,4 +1,4 @@
-#include "cli/cache_file.h"
+#include "files/cache_file.h"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -12,7 +12,7 @@
 #include <limits>
 #include <new>
 
-#include "cli/byte_order.h"
+#include "files/byte_order.h"
 
 namespace sac {
 namespace {

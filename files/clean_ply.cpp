@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "cli/openmesh_input.h"
-#include "cli/text_scan.h"
+#include "files/openmesh_input.h"
+#include "files/text_scan.h"
 
 namespace sac {
 namespace {
