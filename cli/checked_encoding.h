@@ -10,11 +10,11 @@
 
 #include "cli/error_option.h"
 #include "codec/encode/encoder.h"
-#include "codec/encode/search/target_search.h"
 #include "files/clip_input.h"
 #include "files/output_file.h"
 #include "format/status.h"
 #include "metrics/error_meter.h"
+#include "rate_control/target_search.h"
 
 namespace sac {
 

@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "codec/encode/quality.h"
-#include "codec/encode/search/target_search.h"
+#include "rate_control/target_search.h"
 #include "synth/synth.h"
 
 namespace sac {

@@ -6,8 +6,8 @@
 #include <optional>
 #include <sstream>
 
-#include "codec/encode/search/trial.h"
 #include "geometry/bounding_box.h"
+#include "rate_control/trial.h"
 #include "synth/synth.h"
 
 namespace sac {

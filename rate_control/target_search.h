@@ -4,8 +4,8 @@
 #include <optional>
 
 #include "codec/encode/encoder.h"
-#include "codec/encode/search/trial.h"
 #include "format/status.h"
+#include "rate_control/trial.h"
 
 namespace sac {
 

@@ -2,7 +2,7 @@
 
 #include <functional>
 
-#include "codec/encode/search/place.h"
+#include "rate_control/place.h"
 
 namespace sac {
 

@@ -1,4 +1,4 @@
-#include "codec/encode/search/trial.h"
+#include "rate_control/trial.h"
 
 #include <deque>
 #include <memory>

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 #include <vector>
 
-#include "codec/encode/search/trial.h"
+#include "rate_control/trial.h"
 
 namespace sac {
 

@@ -1,4 +1,4 @@
-#include "codec/encode/search/target_search.h"
+#include "rate_control/target_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "codec/encode/quality.h"
-#include "codec/encode/search/place.h"
-#include "codec/encode/search/proposal.h"
-#include "codec/encode/search/rate_model.h"
+#include "rate_control/place.h"
+#include "rate_control/proposal.h"
+#include "rate_control/rate_model.h"
 
 namespace sac {
 namespace {

@@ -1,4 +1,4 @@
-#include "codec/encode/search/place.h"
+#include "rate_control/place.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "codec/encode/search/proposal.h"
+#include "rate_control/proposal.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "codec/encode/search/rate_model.h"
+#include "rate_control/rate_model.h"
 
 #include <Eigen/Cholesky>
 #include <algorithm>

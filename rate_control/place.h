@@ -3,7 +3,7 @@
 #include <cstdint>
 
 #include "codec/encode/encoder.h"
-#include "codec/encode/search/trial.h"
+#include "rate_control/trial.h"
 
 namespace sac {
 
