@@ -6,8 +6,8 @@
 #include <memory>
 #include <string>
 
-#include "codec/encode/encoder.h"
-#include "format/status.h"
+#include "sac/encoder.h"
+#include "sac/status.h"
 #include "synth/synth.h"
 
 namespace sac::bench {

@@ -9,15 +9,15 @@
 
 #include "bench/clip.h"
 #include "bench/peak_memory.h"
-#include "codec/decode/decoder.h"
-#include "codec/encode/encoder.h"
 #include "codec/i_frame.h"
 #include "codec/shape.h"
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
 #include "format/sequence_header.h"
-#include "format/status.h"
 #include "geometry/poisson_system.h"
+#include "sac/decoder.h"
+#include "sac/encoder.h"
+#include "sac/status.h"
 
 namespace sac::bench {
 namespace {

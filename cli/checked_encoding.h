@@ -9,12 +9,12 @@
 #include <vector>
 
 #include "cli/error_option.h"
-#include "codec/encode/encoder.h"
 #include "files/clip_input.h"
 #include "files/output_file.h"
-#include "format/status.h"
 #include "metrics/error_meter.h"
 #include "rate_control/target_search.h"
+#include "sac/encoder.h"
+#include "sac/status.h"
 
 namespace sac {
 
@@ -40,7 +40,7 @@ class CheckedEncoding {
 
   // Afterwards, what has come out.
   const EncoderSettings& encoder_settings() const { return settings_.encoder; }
-  const SequenceHeader& header() const { return encoder_->header(); }
+  const StreamInfo& info() const { return encoder_->info(); }
   const StreamBytes& parts() const { return encoder_->stream_bytes(); }
   std::uint64_t bytes() const { return bytes_; }
   std::uint32_t frames() const { return sent_; }

@@ -3,7 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <functional>
 
-#include "format/status.h"
+#include "sac/status.h"
 
 namespace sac {
 

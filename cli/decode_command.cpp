@@ -93,7 +93,7 @@ Status Decoding::OpenOutput(const Decoder& decoder) {
     SAC_RETURN_IF_ERROR(ReadOrderMap(options_.order_map, mesh.positions.size(), order_));
   }
   ClipOutput::Settings settings;
-  settings.fps = decoder.header()->frame_rate_numerator == 0 ? kFpsOfUnknown : decoder.header()->frames_per_second();
+  settings.fps = decoder.info()->frame_rate_numerator == 0 ? kFpsOfUnknown : decoder.info()->frames_per_second();
   // A pipe cannot be told the number at the end. Elsewhere it is not promised before the stream has shown as many.
   if (std::error_code error; options_.frames.end && std::filesystem::is_fifo(options_.output, error)) {
     settings.frame_count = *options_.frames.end - options_.frames.begin;

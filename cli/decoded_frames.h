@@ -5,8 +5,8 @@
 #include <span>
 #include <string>
 
-#include "codec/decode/decoder.h"
-#include "format/status.h"
+#include "sac/decoder.h"
+#include "sac/status.h"
 
 namespace sac {
 

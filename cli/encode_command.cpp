@@ -64,34 +64,32 @@ Status CheckOptions(EncodeOptions& options) {
   return CheckOverwriting(FilesOfInput(s.inputs), outputs);
 }
 
-std::string RateText(const SequenceHeader& header) {
-  const std::string numerator = std::to_string(header.frame_rate_numerator);
-  return header.frame_rate_denominator == 1 ? numerator
-                                            : numerator + "/" + std::to_string(header.frame_rate_denominator);
+std::string RateText(const StreamInfo& info) {
+  const std::string numerator = std::to_string(info.frame_rate_numerator);
+  return info.frame_rate_denominator == 1 ? numerator : numerator + "/" + std::to_string(info.frame_rate_denominator);
 }
 
 // They add up to the stream. The encoder counts in whole bytes.
 std::vector<std::pair<const char*, long long>> Parts(const StreamBytes& parts) {
-  std::vector<std::pair<const char*, long long>> out = {{"header", std::llround(parts.header)},
-                                                        {"i_frame", std::llround(parts.i_frame)}};
-  for (std::size_t p = 0; p < kPlanes; ++p) out.emplace_back(kPlaneNames[p], std::llround(parts.planes[p]));
-  out.emplace_back("side", std::llround(parts.side));
-  return out;
+  return {{"header", std::llround(parts.header)}, {"i_frame", std::llround(parts.i_frame)},
+          {"motion", std::llround(parts.motion)}, {"displacement", std::llround(parts.displacement)},
+          {"detail", std::llround(parts.detail)}, {"correction", std::llround(parts.correction)},
+          {"side", std::llround(parts.side)}};
 }
 
 Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, double seconds) {
   const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(); };
-  const SequenceHeader& header = encoding.header();
+  const StreamInfo& info = encoding.info();
   Json json;
   for (const auto& [part, bytes] : Parts(encoding.parts())) json[part] = bytes;
   json["bytes"] = encoding.bytes();
   json["bpvf"] = 8 * static_cast<double>(encoding.bytes()) /
-                 (static_cast<double>(header.vertices) * static_cast<double>(encoding.frames()));
+                 (static_cast<double>(info.vertices) * static_cast<double>(encoding.frames()));
   if (!options.settings.unchecked) AddDistortion(encoding.distortion(), json);
   json["frames"] = encoding.frames();
-  json["vertices"] = header.vertices;
-  json["triangles"] = header.triangles;
-  json["harmonics"] = header.harmonics;
+  json["vertices"] = info.vertices;
+  json["triangles"] = info.triangles;
+  json["harmonics"] = info.harmonics;
   json["seconds"] = seconds;
   if (options.settings.targets.any()) json["trials"] = encoding.trials();
   const EncoderSettings& encoder = encoding.encoder_settings();
@@ -100,7 +98,7 @@ Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, doubl
   settings["target_sted"] = or_null(options.settings.targets.sted);
   settings["target_bpvf"] = or_null(options.settings.targets.bpvf);
   settings["quality"] = encoder.quality;
-  settings["fps"] = header.frame_rate_numerator == 0 ? Json() : Json(RateText(header));
+  settings["fps"] = info.frame_rate_numerator == 0 ? Json() : Json(RateText(info));
   settings["harmonics"] = or_null(encoder.harmonics);  // null: from the quality
   settings["samples_per_harmonic"] = encoder.samples_per_harmonic;
   settings["group"] = encoder.group;
@@ -117,11 +115,11 @@ Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, doubl
 }
 
 void PrintText(const Json& json, const CheckedEncoding& encoding, std::FILE* file) {
-  const SequenceHeader& header = encoding.header();
+  const StreamInfo& info = encoding.info();
   const std::uint32_t frames = encoding.frames();
   const auto bytes = static_cast<double>(encoding.bytes());
-  const double raw = 12 * static_cast<double>(header.vertices) * static_cast<double>(frames);
-  std::fprintf(file, "%u frames, %u vertices, %u triangles\n", frames, header.vertices, header.triangles);
+  const double raw = 12 * static_cast<double>(info.vertices) * static_cast<double>(frames);
+  std::fprintf(file, "%u frames, %u vertices, %u triangles\n", frames, info.vertices, info.triangles);
   std::fprintf(file, "%.0f bytes, 1 : %.1f of raw float32, %.4g bits a vertex and frame\n", bytes, raw / bytes,
                json["bpvf"].get<double>());
   for (const auto& [part, size] : Parts(encoding.parts())) {

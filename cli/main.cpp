@@ -15,7 +15,7 @@
 
 #include "cli/commands.h"
 #include "files/temporary_files.h"
-#include "format/sequence_header.h"
+#include "sac/version.h"
 
 namespace sac {
 namespace {
@@ -61,8 +61,7 @@ void WrapDescriptions(CLI::App& app) {
 ExitCode Run(int argc, char** argv) {
   CLI::App app("Streaming codec for animated triangle meshes.");
   app.name("sac");
-  app.set_version_flag("--version", "sac " SAC_VERSION ", stream format " + std::to_string(kVersionMajor) + "." +
-                                        std::to_string(kVersionMinor));
+  app.set_version_flag("--version", "sac " SAC_VERSION_STRING ", stream format " SAC_STREAM_VERSION_STRING);
   app.require_subcommand(1);
   app.footer(
       "sac COMMAND --help tells the options of a command.\n"

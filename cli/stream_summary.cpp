@@ -5,8 +5,8 @@
 #include "codec/draco_mesh.h"
 #include "format/group_syntax.h"
 #include "format/i_frame_syntax.h"
-#include "format/limits.h"
 #include "format/stream_index.h"
+#include "sac/limits.h"
 
 namespace sac {
 namespace {

@@ -8,7 +8,7 @@
 #include "files/stream_input.h"
 #include "format/packet.h"
 #include "format/sequence_header.h"
-#include "format/status.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -26,9 +26,9 @@ Status Verify(const std::string& path) {
       progress.FramesDone(count);
     }
   }
-  const SequenceHeader& header = *frames.decoder().header();
-  std::printf("%s: ok, %u frames, %u vertices, %u triangles, %llu bytes\n", input.name().c_str(), count,
-              header.vertices, header.triangles, static_cast<unsigned long long>(frames.bytes()));
+  const StreamInfo& info = *frames.decoder().info();
+  std::printf("%s: ok, %u frames, %u vertices, %u triangles, %llu bytes\n", input.name().c_str(), count, info.vertices,
+              info.triangles, static_cast<unsigned long long>(frames.bytes()));
   return Status::Ok();
 }
 

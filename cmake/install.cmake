@@ -1,36 +1,28 @@
-# cmake --install: the decoder library, its headers, a CMake package (find_package(sac)) and a pkg-config file.
+# cmake --install: libraries, public headers, a CMake package (find_package(sac COMPONENTS decoder encoder)) and a
+# pkg-config file.
 include(CMakePackageConfigHelpers)
 
-# What codec/decode/decoder.h includes, and the header for C.
-set(headers
-  geometry/bounding_box.h
-  codec/decode/decoder.h
-  codec/decode/lost_frames.h
-  codec/decode/vertex_buffer.h
-  geometry/mesh.h
-  format/bytes.h
-  format/limits.h
-  format/sequence_header.h
-  format/status.h)
-foreach(header ${headers})
-  cmake_path(GET header PARENT_PATH folder)
-  install(FILES ${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sac/${folder})
-endforeach()
-install(FILES codec/decode/sac.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/sac)
+install(DIRECTORY include/sac DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
 
-set_target_properties(sac_decoder PROPERTIES EXPORT_NAME decoder)
-set_target_properties(sac_codec PROPERTIES EXPORT_NAME codec)
+# Those who link sac::decoder ask for nothing of the encoder.
+set(package ${CMAKE_INSTALL_LIBDIR}/cmake/sac)
 set_target_properties(sac_format PROPERTIES EXPORT_NAME format)
 set_target_properties(sac_geometry PROPERTIES EXPORT_NAME geometry)
-set(libraries sac_decoder sac_codec sac_format sac_geometry)
-if(SAC_BUILD_SHARED)
-  set_target_properties(sac_decoder_shared PROPERTIES EXPORT_NAME decoder_shared)
-  list(APPEND libraries sac_decoder_shared)
+set_target_properties(sac_codec PROPERTIES EXPORT_NAME codec)
+set_target_properties(sac_decoder PROPERTIES EXPORT_NAME decoder)
+install(TARGETS sac_decoder sac_codec sac_geometry sac_format EXPORT sac-decoder)
+install(EXPORT sac-decoder NAMESPACE sac:: FILE sac-decoder.cmake DESTINATION ${package})
+if(SAC_BUILD_ENCODER)
+  set_target_properties(sac_encoder PROPERTIES EXPORT_NAME encoder)
+  install(TARGETS sac_encoder EXPORT sac-encoder)
+  install(EXPORT sac-encoder NAMESPACE sac:: FILE sac-encoder.cmake DESTINATION ${package})
 endif()
-install(TARGETS ${libraries} EXPORT sac)
+if(SAC_BUILD_SHARED)
+  set_target_properties(sac_shared PROPERTIES EXPORT_NAME shared)
+  install(TARGETS sac_shared EXPORT sac-shared)
+  install(EXPORT sac-shared NAMESPACE sac:: FILE sac-shared.cmake DESTINATION ${package})
+endif()
 
-set(package ${CMAKE_INSTALL_LIBDIR}/cmake/sac)
-install(EXPORT sac NAMESPACE sac:: FILE sac-targets.cmake DESTINATION ${package})
 configure_package_config_file(cmake/sac-config.cmake.in sac-config.cmake INSTALL_DESTINATION ${package})
 write_basic_package_version_file(sac-config-version.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/sac-config.cmake ${CMAKE_CURRENT_BINARY_DIR}/sac-config-version.cmake

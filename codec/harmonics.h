@@ -8,9 +8,9 @@
 #include <vector>
 
 #include "format/harmonic_order.h"
-#include "format/status.h"
 #include "geometry/components.h"
 #include "geometry/laplacian.h"
+#include "sac/status.h"
 
 namespace sac {
 

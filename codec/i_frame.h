@@ -8,8 +8,8 @@
 #include "codec/shape.h"
 #include "format/i_frame_syntax.h"
 #include "format/sequence_header.h"
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -10,7 +10,7 @@
 #include "format/bit_mixer.h"
 #include "format/integer_coder.h"
 #include "format/range_coder.h"
-#include "format/status.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -8,8 +8,8 @@
 #include "codec/shape.h"
 #include "format/prediction.h"
 #include "format/sequence_header.h"
-#include "geometry/mesh.h"
 #include "geometry/poisson_system.h"
+#include "sac/mesh.h"
 
 namespace sac {
 

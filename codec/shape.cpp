@@ -4,6 +4,7 @@
 #include <string>
 #include <utility>
 
+#include "format/memory.h"
 #include "geometry/sparse_cholesky.h"
 
 namespace sac {

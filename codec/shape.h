@@ -6,13 +6,13 @@
 
 #include "codec/harmonics.h"
 #include "codec/patches.h"
-#include "format/limits.h"
 #include "format/plane_layout.h"
 #include "format/sequence_header.h"
-#include "format/status.h"
 #include "geometry/components.h"
 #include "geometry/laplacian.h"
-#include "geometry/mesh.h"
+#include "sac/limits.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

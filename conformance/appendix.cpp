@@ -6,10 +6,10 @@
 #include <sstream>
 #include <string>
 
-#include "codec/decode/decoder.h"
 #include "conformance/stream_parts.h"
 #include "format/bytes.h"
 #include "format/stream_index.h"
+#include "sac/decoder.h"
 
 namespace sac {
 namespace {

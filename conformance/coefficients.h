@@ -6,7 +6,7 @@
 
 #include "format/group_structure.h"
 #include "format/prediction.h"
-#include "format/status.h"
+#include "sac/status.h"
 
 namespace sac {
 

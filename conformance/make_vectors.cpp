@@ -8,13 +8,13 @@
 #include <optional>
 #include <string>
 
-#include "codec/decode/decoder.h"
 #include "conformance/appendix.h"
 #include "conformance/coefficients.h"
 #include "conformance/invalid_vectors.h"
 #include "conformance/valid_vectors.h"
 #include "format/bytes.h"
 #include "format/crc32.h"
+#include "sac/decoder.h"
 
 namespace sac {
 namespace {

@@ -6,12 +6,12 @@
 #include <span>
 #include <vector>
 
-#include "codec/encode/encoder.h"
 #include "format/frame_syntax.h"
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
 #include "format/sequence_header.h"
-#include "geometry/mesh.h"
+#include "sac/encoder.h"
+#include "sac/mesh.h"
 
 namespace sac {
 

@@ -1,6 +1,6 @@
 /* A player without a picture: reads a stream from a file, in small pieces, and tells where a vertex goes. Twice, to
  * show how a clip is played again. */
-#include <sac.h>
+#include <sac/sac.h>
 #include <stdio.h>
 #include <stdlib.h>
 

@@ -2,7 +2,7 @@
 #include <cstdio>
 #include <iostream>
 
-#include "codec/decode/decoder.h"
+#include "sac/decoder.h"
 
 static sac::Status Play(std::istream& in) {
   sac::Decoder decoder;

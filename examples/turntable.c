@@ -3,7 +3,7 @@
 #include <GL/osmesa.h>
 #include <math.h>
 #include <png.h>
-#include <sac.h>
+#include <sac/sac.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -9,8 +9,8 @@
 #include "files/cache_file.h"
 #include "files/frame_pattern.h"
 #include "files/output_file.h"
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "format/status.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -3,8 +3,8 @@
 #include <string>
 #include <string_view>
 
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -7,8 +7,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

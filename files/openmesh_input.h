@@ -3,7 +3,7 @@
 #include <string>
 #include <string_view>
 
-#include "format/status.h"
+#include "sac/status.h"
 
 namespace sac {
 

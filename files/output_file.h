@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string>
 
-#include "format/status.h"
+#include "sac/status.h"
 
 namespace sac {
 

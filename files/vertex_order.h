@@ -5,8 +5,8 @@
 #include <string>
 #include <vector>
 
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "format/limits.h"
 #include "format/sequence_header.h"
-#include "format/status.h"
+#include "sac/limits.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "format/limits.h"
-#include "format/status.h"
+#include "sac/limits.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "format/limits.h"
 #include "format/packet.h"
+#include "sac/limits.h"
 
 namespace sac {
 

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <string>
 
+#include "format/memory.h"
+
 namespace sac {
 namespace {
 
@@ -65,6 +67,23 @@ Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& 
   if (MeshMemory(header.vertices, header.triangles) > limits.memory)
     return Status::Limit("the mesh takes more memory than the limit");
   return Status::Ok();
+}
+
+StreamInfo InfoOf(const SequenceHeader& header) {
+  StreamInfo info;
+  info.vertices = header.vertices;
+  info.triangles = header.triangles;
+  info.harmonics = header.harmonics;
+  info.frame_rate_numerator = header.frame_rate_numerator;
+  info.frame_rate_denominator = header.frame_rate_denominator;
+  info.reference_shape = static_cast<ReferenceShape>(header.reference_shape);
+  info.position_step = static_cast<double>(header.cell);
+  info.motion_step = static_cast<double>(header.motion_step);
+  info.rotation_step = static_cast<double>(header.rotation_step);
+  info.displacement_step = static_cast<double>(header.displacement_step);
+  info.detail_step = static_cast<double>(header.detail_step);
+  info.correction_step = static_cast<double>(header.correction_step);
+  return info;
 }
 
 }  // namespace sac

@@ -4,19 +4,15 @@
 #include <vector>
 
 #include "format/bytes.h"
-#include "format/limits.h"
-#include "format/status.h"
+#include "sac/limits.h"
+#include "sac/status.h"
+#include "sac/stream_info.h"
+#include "sac/version.h"
 
 namespace sac {
 
-inline constexpr std::uint8_t kVersionMajor = 0;
-inline constexpr std::uint8_t kVersionMinor = 7;
-
-// What a group's fields are measured against (spec.md 4).
-enum class ReferenceShape : std::uint8_t {
-  kKey = 0,       // the decoded I-frame
-  kPrevious = 1,  // the reconstruction of the frame before, as published (Wang et al. 2015)
-};
+inline constexpr std::uint8_t kVersionMajor = SAC_STREAM_VERSION_MAJOR;
+inline constexpr std::uint8_t kVersionMinor = SAC_STREAM_VERSION_MINOR;
 
 // The sequence header, in the order of the bitstream (spec.md 4). Steps are finite and positive, those of planes that
 // may be left out zero or more.
@@ -81,5 +77,8 @@ std::vector<std::uint8_t> WriteSequenceHeader(const SequenceHeader& header);
 // Parses and checks every field. kUnsupported for another version, kCorrupt for a rule of spec.md 4, kLimit beyond
 // `limits`.
 Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& limits, SequenceHeader& header);
+
+// What of the header matters to those who play or make a stream.
+StreamInfo InfoOf(const SequenceHeader& header);
 
 }  // namespace sac

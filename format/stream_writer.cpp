@@ -1,10 +1,12 @@
 #include "format/stream_writer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <utility>
 
+#include "format/plane_layout.h"
 #include "format/stream_index.h"
 
 namespace sac {
@@ -70,10 +72,12 @@ void StreamWriter::Append(std::span<const std::uint8_t> more, double StreamBytes
 }
 
 void StreamWriter::Account(const FrameBits& bits, double side_before) {
+  constexpr std::array<double StreamBytes::*, kPlanes> kParts = {&StreamBytes::motion, &StreamBytes::displacement,
+                                                                 &StreamBytes::detail, &StreamBytes::correction};
   for (std::size_t p = 0; p < kPlanes; ++p) {
     const double plane = std::min(std::round(bits.planes[p] / 8), sizes_.side - side_before);
     sizes_.side -= plane;
-    sizes_.planes[p] += plane;
+    sizes_.*kParts[p] += plane;
   }
 }
 

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -8,17 +7,9 @@
 #include "format/frame_coder.h"
 #include "format/group_syntax.h"
 #include "format/packet.h"
-#include "format/plane_layout.h"
+#include "sac/stream_info.h"
 
 namespace sac {
-
-// Bytes by what they say; they add up to the stream.
-struct StreamBytes {
-  double header = 0;  // magic, sequence header, end and index
-  double i_frame = 0;
-  std::array<double, kPlanes> planes = {};
-  double side = 0;  // rigid motion, frame types, packet framing of groups
-};
 
 // Puts packets together to a stream (spec.md 3), and keeps account of them.
 class StreamWriter {

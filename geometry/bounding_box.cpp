@@ -1,15 +1,9 @@
 #include "geometry/bounding_box.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 
 namespace sac {
-
-double Box::diagonal() const {
-  const std::array<double, 3> s = size();
-  return std::sqrt(s[0] * s[0] + s[1] * s[1] + s[2] * s[2]);
-}
 
 Box BoundingBox(const Positions& positions) {
   Box box;

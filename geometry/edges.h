@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
 
 namespace sac {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "geometry/edges.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
 
 namespace sac {
 

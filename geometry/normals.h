@@ -2,7 +2,7 @@
 
 #include <vector>
 
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
 
 namespace sac {
 

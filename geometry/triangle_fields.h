@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/laplacian.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
 
 namespace sac {
 

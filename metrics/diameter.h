@@ -1,6 +1,6 @@
 #pragma once
 
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
 
 namespace sac {
 

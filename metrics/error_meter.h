@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <vector>
 
-#include "geometry/mesh.h"
 #include "metrics/kg.h"
 #include "metrics/sted.h"
+#include "sac/mesh.h"
 
 namespace sac {
 

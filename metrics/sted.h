@@ -3,8 +3,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "geometry/mesh.h"
 #include "metrics/edge_graph.h"
+#include "sac/mesh.h"
 
 namespace sac {
 

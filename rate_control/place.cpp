@@ -5,7 +5,7 @@
 #include <cmath>
 
 #include "codec/encode/quality.h"
-#include "format/limits.h"
+#include "sac/limits.h"
 
 namespace sac {
 namespace {

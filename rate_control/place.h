@@ -2,8 +2,8 @@
 
 #include <cstdint>
 
-#include "codec/encode/encoder.h"
 #include "rate_control/trial.h"
+#include "sac/encoder.h"
 
 namespace sac {
 

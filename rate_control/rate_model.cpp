@@ -115,10 +115,10 @@ RateFigures RateModel::Formulas(const OperatingPoint& p) const {
   const double harmonics = p.harmonics / c.harmonics;
   RateFigures f;
   f.bytes = static_cast<double>(centre_.bytes) + bytes_per_bit_ * (p.position_bits - c.position_bits) +
-            centre_.parts.planes[kMotion] * (std::pow(motion, -1.1) * std::pow(harmonics, 0.5) - 1) +
-            centre_.parts.planes[kDisplacement] *
+            centre_.parts.motion * (std::pow(motion, -1.1) * std::pow(harmonics, 0.5) - 1) +
+            centre_.parts.displacement *
                 (std::pow(displacement, -0.75) * std::pow(motion, 0.2) * std::pow(harmonics, 0.25) - 1);
-  if (c.detail_step > 0) f.bytes += centre_.parts.planes[kDetail] * (std::pow(p.detail_step / c.detail_step, -0.8) - 1);
+  if (c.detail_step > 0) f.bytes += centre_.parts.detail * (std::pow(p.detail_step / c.detail_step, -0.8) - 1);
   f.bytes = std::max(f.bytes, 0.05 * static_cast<double>(centre_.bytes));
   f.kg = std::exp(kg_.scale + LogRoot(KgParts(p), kg_.logs));
   f.sted = std::exp(sted_.scale + LogRoot(StedParts(p), sted_.logs));

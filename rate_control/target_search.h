@@ -3,9 +3,9 @@
 #include <functional>
 #include <optional>
 
-#include "codec/encode/encoder.h"
-#include "format/status.h"
 #include "rate_control/trial.h"
+#include "sac/encoder.h"
+#include "sac/status.h"
 
 namespace sac {
 

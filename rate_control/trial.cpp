@@ -7,8 +7,8 @@
 #include <utility>
 #include <vector>
 
-#include "codec/decode/decoder.h"
 #include "metrics/error_meter.h"
+#include "sac/decoder.h"
 
 namespace sac {
 namespace {
@@ -81,7 +81,7 @@ Status RunTrial(const ClipSource& clip, const std::function<void(std::uint32_t)>
   DistortionMetrics distortion;
   SAC_RETURN_IF_ERROR(measurement.Finish(distortion, trial.bytes));
   trial.parts = encoder->stream_bytes();
-  trial.vertices = static_cast<double>(encoder->header().vertices);
+  trial.vertices = static_cast<double>(encoder->info().vertices);
   trial.kg = distortion.kg;
   trial.sted = distortion.sted;
   trial.bpvf = 8 * static_cast<double>(trial.bytes) / (trial.vertices * static_cast<double>(distortion.frames));

@@ -3,9 +3,9 @@
 #include <cstdint>
 #include <functional>
 
-#include "codec/encode/encoder.h"
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/encoder.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -4,8 +4,8 @@
 #include <cstdint>
 #include <functional>
 
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -12,7 +12,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/decode/decoder.h"
+#include "sac/decoder.h"
 #include "tests/counted_memory.h"
 
 namespace sac {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <string>
 
-#include "codec/decode/sac.h"
+#include "sac/sac.h"
 #include "tests/test_clips.h"
 
 namespace sac {

@@ -224,10 +224,10 @@ TEST(Codec, ShapesThatComeAgainArePredictedFromLongAgo) {
   for (const std::uint32_t pyramid : {1u, 8u}) {
     EncoderSettings settings = Complete(turns(1));
     settings.pyramid = pyramid;
-    const double few = Encode(turns(4), settings).parts.planes[kMotion];
+    const double few = Encode(turns(4), settings).parts.motion;
     const Clip clip = turns(44);
     const Encoded many = Encode(clip, settings);
-    EXPECT_LT(many.parts.planes[kMotion], 2 * few);
+    EXPECT_LT(many.parts.motion, 2 * few);
     ExpectWithin(clip, many, Bound(clip, kStep));
   }
 }
@@ -285,8 +285,8 @@ TEST(Codec, AGroupNeedsNoOther) {
 TEST(Codec, BytesAddUp) {
   const Encoded encoded = Encode(TurningPartsClip(20), {});
   const StreamBytes& p = encoded.parts;
-  const double planes = std::accumulate(p.planes.begin(), p.planes.end(), 0.0);
-  EXPECT_EQ(p.header + p.i_frame + planes + p.side, static_cast<double>(encoded.bytes.size()));
+  EXPECT_EQ(p.header + p.i_frame + p.motion + p.displacement + p.detail + p.correction + p.side,
+            static_cast<double>(encoded.bytes.size()));
 }
 
 TEST(Codec, AClipOfNoFramesIsAMesh) {

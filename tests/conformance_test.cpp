@@ -14,11 +14,11 @@
 #include <string>
 #include <vector>
 
-#include "codec/decode/decoder.h"
 #include "conformance/coefficients.h"
 #include "format/bytes.h"
 #include "format/crc32.h"
 #include "geometry/bounding_box.h"
+#include "sac/decoder.h"
 
 namespace sac {
 namespace {
@@ -97,7 +97,7 @@ TEST(Conformance, ValidStreamsDecode) {
 
     // spec.md 8: the tolerance, and what rounding to binary32 adds here and in the manifest.
     const double diagonal = BoundingBox(mesh.positions).diagonal();
-    const double tolerance = 1e-6 * std::max(diagonal, static_cast<double>(d.decoder.header()->cell));
+    const double tolerance = 1e-6 * std::max(diagonal, static_cast<double>(d.decoder.info()->position_step));
     for (const Json& row : vector.at("positions")) {
       const auto& position = d.frames.at(row.at(0)).positions.at(row.at(1));
       for (std::size_t a = 0; a < 3; ++a) {

@@ -1,4 +1,4 @@
-#include "codec/encode/encoder.h"
+#include "sac/encoder.h"
 
 #include <gtest/gtest.h>
 
@@ -9,6 +9,7 @@
 #include <string>
 
 #include "tests/test_clips.h"
+#include "tests/test_packets.h"
 
 namespace sac {
 namespace {
@@ -125,11 +126,11 @@ TEST(Encoder, KeepsToTheLimitsOfDecoders) {
   settings.quality = 50;
   std::unique_ptr<Encoder> encoder;
   ASSERT_TRUE(Encoder::Create(clip.mesh, settings, encoder).ok());
-  const std::uint32_t usual = encoder->header().harmonics;
+  const std::uint32_t usual = encoder->info().harmonics;
   settings.limits.free_work = 2e6;  // too little for so many
   settings.limits.work_per_byte = 0;
   ASSERT_TRUE(Encoder::Create(clip.mesh, settings, encoder).ok());
-  EXPECT_LT(encoder->header().harmonics, usual);
+  EXPECT_LT(encoder->info().harmonics, usual);
   DecoderSettings decoder;
   decoder.limits = settings.limits;
   EXPECT_TRUE(Decode(Encode(clip, settings).bytes, 1000, decoder).status.ok());
@@ -228,7 +229,7 @@ TEST(Encoder, HeaderSaysWhatWasAskedFor) {
   settings.motion_step = 0.125;
   const Encoded encoded = Encode(BendingClip(1), settings);
   Decoder decoder;
-  EXPECT_EQ(decoder.header(), nullptr);
+  EXPECT_EQ(decoder.info(), nullptr);
   EXPECT_EQ(decoder.mesh(), nullptr);
   for (std::span<const std::uint8_t> rest(encoded.bytes); !rest.empty();) {
     ASSERT_TRUE(decoder.Send(rest).ok());
@@ -236,12 +237,14 @@ TEST(Encoder, HeaderSaysWhatWasAskedFor) {
     while (decoder.Receive(frame).ok()) {
     }
   }
-  ASSERT_NE(decoder.header(), nullptr);
-  EXPECT_EQ(decoder.header()->frame_rate_numerator, 30000u);
-  EXPECT_EQ(decoder.header()->frame_rate_denominator, 1001u);
-  EXPECT_EQ(decoder.header()->position_bits, 13 + 5);  // the grid is finer than the steps
-  EXPECT_EQ(decoder.header()->motion_step, 0.125f);
-  EXPECT_EQ(decoder.header()->vertices, 80u);
+  ASSERT_NE(decoder.info(), nullptr);
+  EXPECT_EQ(decoder.info()->frame_rate_numerator, 30000u);
+  EXPECT_EQ(decoder.info()->frame_rate_denominator, 1001u);
+  SequenceHeader header;
+  ASSERT_TRUE(ParseSequenceHeader(Packets(encoded.bytes).front().payload, Limits{}, header).ok());
+  EXPECT_EQ(header.position_bits, 13 + 5);  // the grid is finer than the steps
+  EXPECT_EQ(decoder.info()->motion_step, 0.125f);
+  EXPECT_EQ(decoder.info()->vertices, 80u);
 }
 
 }  // namespace

@@ -10,10 +10,10 @@
 #include <string>
 #include <vector>
 
-#include "codec/decode/decoder.h"
-#include "codec/encode/encoder.h"
 #include "format/packet.h"
 #include "format/stream_index.h"
+#include "sac/decoder.h"
+#include "sac/encoder.h"
 #include "synth/synth.h"
 #include "tests/counted_memory.h"
 

@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "codec/decode/decoder.h"
 #include "codec/patches.h"
 #include "codec/radial_functions.h"
 #include "format/bytes.h"
@@ -29,6 +28,7 @@
 #include "format/stream_index.h"
 #include "geometry/components.h"
 #include "geometry/deformation.h"
+#include "sac/decoder.h"
 #include "tests/spec_examples.h"
 
 namespace sac {

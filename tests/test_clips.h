@@ -8,8 +8,8 @@
 #include <memory>
 #include <vector>
 
-#include "codec/decode/decoder.h"
-#include "codec/encode/encoder.h"
+#include "sac/decoder.h"
+#include "sac/encoder.h"
 #include "tests/test_meshes.h"
 
 namespace sac {
@@ -23,7 +23,6 @@ struct Clip {
 struct Encoded {
   std::vector<std::uint8_t> bytes;
   std::vector<std::uint32_t> order;
-  SequenceHeader header;
   StreamBytes parts;
 };
 
@@ -53,7 +52,6 @@ inline Encoded Encode(const Clip& clip, const EncoderSettings& settings) {
   EXPECT_TRUE(status.ok()) << status.message();
   take();
   out.order = encoder->order();
-  out.header = encoder->header();
   out.parts = encoder->stream_bytes();
   return out;
 }

@@ -14,7 +14,7 @@
 #include "codec/shape.h"
 #include "geometry/components.h"
 #include "geometry/laplacian.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
 #include "synth/icosphere.h"
 
 namespace sac {

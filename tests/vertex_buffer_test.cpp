@@ -6,6 +6,7 @@
 #include <cstring>
 #include <random>
 
+#include "geometry/bounding_box.h"
 #include "geometry/normals.h"
 #include "tests/test_clips.h"
 

@@ -6,8 +6,8 @@
 
 #include "bench/peers/peer.h"
 #include "format/bytes.h"
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac::bench {
 

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "format/range_coder.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
 
 namespace sac::bench {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "bench/peers/peer.h"
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac::bench {
 

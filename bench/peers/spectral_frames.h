@@ -6,10 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "format/status.h"
 #include "geometry/components.h"
 #include "geometry/laplacian.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac::bench {
 

@@ -3,7 +3,7 @@
 #include <memory>
 #include <string>
 
-#include "format/status.h"
+#include "sac/status.h"
 
 struct XXH3_state_s;
 

@@ -4,7 +4,7 @@
 
 #include "cli/distortion_report.h"
 #include "cli/sweep/sweep_run.h"
-#include "format/status.h"
+#include "sac/status.h"
 
 namespace sac {
 

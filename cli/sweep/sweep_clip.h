@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "cli/sweep/display_mesh.h"
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

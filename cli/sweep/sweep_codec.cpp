@@ -6,6 +6,7 @@
 
 #include "cli/sweep/child_process.h"
 #include "cli/sweep/content_key.h"
+#include "sac/version.h"
 
 namespace sac {
 namespace {
@@ -73,7 +74,7 @@ const std::vector<std::string>& PeerNames() {
 Status SacCodecs(const std::vector<std::string>& qualities, const std::vector<std::string>& max_errors,
                  const std::vector<std::string>& variants, std::vector<SweepCodec>& codecs) {
   SweepCodec sac;
-  sac.version = SAC_VERSION;
+  sac.version = SAC_VERSION_STRING;
   SAC_RETURN_IF_ERROR(ThisProgram(sac.program));
   SAC_RETURN_IF_ERROR(KeyOfFile(sac.program, sac.program_key));
   const auto add = [&](const std::string& name, const std::string& title, const std::string& what, const char* option,

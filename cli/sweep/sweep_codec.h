@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "format/status.h"
+#include "sac/status.h"
 
 namespace sac {
 

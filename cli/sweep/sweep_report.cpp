@@ -12,6 +12,7 @@
 #include "cli/sweep/report_page.h"
 #include "cli/sweep/result_file.h"
 #include "files/output_file.h"
+#include "sac/version.h"
 
 namespace sac {
 namespace {
@@ -84,7 +85,7 @@ Json BdRates(const Sweep& sweep) {
 
 Json ToJson(const Sweep& sweep) {
   Json json;
-  json["version"] = SAC_VERSION;
+  json["version"] = SAC_VERSION_STRING;
   json["jobs"] = sweep.jobs;
   json["clips"] = Json::array();
   for (const SweepClip& clip : sweep.clips) {

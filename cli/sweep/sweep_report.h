@@ -6,7 +6,7 @@
 #include "cli/sweep/sweep_clip.h"
 #include "cli/sweep/sweep_codec.h"
 #include "cli/sweep/sweep_run.h"
-#include "format/status.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -7,8 +7,8 @@
 #include "cli/sweep/child_process.h"
 #include "cli/sweep/sweep_clip.h"
 #include "cli/sweep/sweep_codec.h"
-#include "format/status.h"
 #include "metrics/error_meter.h"
+#include "sac/status.h"
 
 namespace sac {
 

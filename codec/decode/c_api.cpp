@@ -4,8 +4,9 @@
 #include <exception>
 #include <string>
 
-#include "codec/decode/decoder.h"
-#include "codec/decode/sac.h"
+#include "sac/decoder.h"
+#include "sac/sac.h"
+#include "sac/version.h"
 
 struct sac_decoder {
   sac::Decoder decoder;
@@ -105,12 +106,9 @@ const Out* Flat(const std::vector<In>& values) {
 
 }  // namespace
 
-const char* sac_version(void) { return SAC_VERSION; }
+const char* sac_version(void) { return SAC_VERSION_STRING; }
 
-const char* sac_stream_version(void) {
-  static const std::string version = std::to_string(sac::kVersionMajor) + "." + std::to_string(sac::kVersionMinor);
-  return version.c_str();
-}
+const char* sac_stream_version(void) { return SAC_STREAM_VERSION_STRING; }
 
 void sac_settings_init(sac_settings* settings) {
   const sac::DecoderSettings defaults;
@@ -194,8 +192,8 @@ sac_status sac_decoder_mesh(sac_decoder* decoder, sac_mesh* mesh) {
     mesh->vertices = static_cast<std::uint32_t>(m.positions.size());
     mesh->triangles = static_cast<std::uint32_t>(m.triangles.size());
     mesh->uvs = static_cast<std::uint32_t>(m.uvs.size());
-    mesh->frame_rate_numerator = d.header()->frame_rate_numerator;
-    mesh->frame_rate_denominator = d.header()->frame_rate_denominator;
+    mesh->frame_rate_numerator = d.info()->frame_rate_numerator;
+    mesh->frame_rate_denominator = d.info()->frame_rate_denominator;
     mesh->triangle_vertices = Flat<std::uint32_t>(m.triangles);
     mesh->uv_values = Flat<float>(m.uvs);
     mesh->triangle_uvs = Flat<std::uint32_t>(m.uv_triangles);

@@ -1,4 +1,4 @@
-#include "codec/decode/decoder.h"
+#include "sac/decoder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,6 +12,7 @@
 #include "codec/decode/lost_frames.h"
 #include "codec/decode/packet_source.h"
 #include "codec/decode/seek_table.h"
+#include "codec/decode/vertex_buffer.h"
 #include "codec/i_frame.h"
 #include "codec/reconstruct.h"
 #include "codec/shape.h"
@@ -50,6 +51,7 @@ class Decoder::Impl {
 
   const DecoderSettings settings;
   std::optional<SequenceHeader> header;
+  StreamInfo stream_info;  // of the header
   std::optional<Mesh> mesh;
   std::vector<std::uint32_t> order;
   std::optional<std::uint32_t> total_frames;
@@ -193,6 +195,7 @@ Status Decoder::Impl::TakeHeader(std::span<const std::uint8_t> payload) {
   SequenceHeader parsed;
   SAC_RETURN_IF_ERROR(ParseSequenceHeader(payload, settings.limits, parsed));
   header = parsed;
+  stream_info = InfoOf(parsed);
   header_bytes_.assign(payload.begin(), payload.end());
   after_header_ = true;
   return Status::Ok();
@@ -471,7 +474,7 @@ Status Decoder::AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed
   return impl_->Contain([&] { return impl_->AddIndex(tail, needed); });
 }
 void Decoder::Reset() { impl_ = std::make_unique<Impl>(impl_->settings); }
-const SequenceHeader* Decoder::header() const { return impl_->header ? &*impl_->header : nullptr; }
+const StreamInfo* Decoder::info() const { return impl_->header ? &impl_->stream_info : nullptr; }
 const Mesh* Decoder::mesh() const { return impl_->mesh ? &*impl_->mesh : nullptr; }
 const std::vector<std::uint32_t>& Decoder::order() const { return impl_->order; }
 std::optional<std::uint32_t> Decoder::frames() const { return impl_->total_frames; }
@@ -488,9 +491,9 @@ Status Decoder::Interpolate(double time, const FrameBuffers& buffers, FrameInfo&
 }
 
 Status Decoder::SeekTime(double seconds, std::uint64_t& byte) {
-  if (!header()) return Status::NeedMoreData();
-  if (header()->frame_rate_numerator == 0) return Status::InvalidArgument("the stream has no frame rate");
-  const double time = seconds * header()->frames_per_second();
+  if (!info()) return Status::NeedMoreData();
+  if (info()->frame_rate_numerator == 0) return Status::InvalidArgument("the stream has no frame rate");
+  const double time = seconds * info()->frames_per_second();
   const double frame = std::floor(time + 1e-9 + 4e-16 * time);  // of frames' own times, too
   if (!(frame >= 0 && frame <= 0xffffffffu)) return Status::InvalidArgument("a time that is no frame's");
   return Seek(static_cast<std::uint32_t>(frame), byte);

@@ -9,8 +9,8 @@
 #include "codec/reconstruct.h"
 #include "codec/shape.h"
 #include "format/sequence_header.h"
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -8,9 +8,9 @@
 #include "codec/shape.h"
 #include "format/frame_coder.h"
 #include "format/group_syntax.h"
-#include "format/limits.h"
 #include "format/sequence_header.h"
-#include "format/status.h"
+#include "sac/limits.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -4,12 +4,9 @@
 #include <cstdint>
 #include <vector>
 
-namespace sac {
+#include "sac/decoder.h"
 
-// A run of frames.
-struct FrameRange {
-  std::uint32_t first = 0, count = 0;
-};
+namespace sac {
 
 // The frames that damage has cost.
 class LostFrames {

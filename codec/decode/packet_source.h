@@ -5,10 +5,10 @@
 #include <span>
 #include <vector>
 
-#include "format/limits.h"
 #include "format/packet.h"
 #include "format/packet_search.h"
-#include "format/status.h"
+#include "sac/limits.h"
+#include "sac/status.h"
 
 namespace sac {
 

@@ -1,4 +1,4 @@
-#include "codec/encode/encoder.h"
+#include "sac/encoder.h"
 
 #include <algorithm>
 #include <cmath>
@@ -140,6 +140,7 @@ class Encoder::Impl {
   std::optional<StreamWriter> writer;
   std::vector<std::uint32_t> order;
   SequenceHeader header;
+  StreamInfo info;  // of the header
 
  private:
   bool IsFull(std::uint32_t frames) const;
@@ -221,6 +222,7 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings, 
   const std::vector<std::uint8_t> i_frame = WriteIFrame(syntax, header);
   encoder_ = std::make_unique<GroupEncoder>(shape_, header, settings.max_error.value_or(0));
 
+  info = InfoOf(header);
   writer.emplace(settings.index, settings.repeat_start);
   writer->Start(WriteSequenceHeader(header), i_frame);
   return Status::Ok();
@@ -321,7 +323,7 @@ Status Encoder::Send(std::span<const Vec3f> positions) { return impl_->Send(posi
 Status Encoder::Finish() { return impl_->Finish(); }
 std::vector<std::uint8_t> Encoder::TakeBytes() { return impl_->writer->TakeBytes(); }
 const std::vector<std::uint32_t>& Encoder::order() const { return impl_->order; }
-const SequenceHeader& Encoder::header() const { return impl_->header; }
+const StreamInfo& Encoder::info() const { return impl_->info; }
 const StreamBytes& Encoder::stream_bytes() const { return impl_->writer->sizes(); }
 
 }  // namespace sac

@@ -3,7 +3,7 @@
 #include <Eigen/Core>
 
 #include "geometry/laplacian.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
 
 namespace sac {
 

@@ -12,8 +12,8 @@
 #include "format/frame_syntax.h"
 #include "format/prediction.h"
 #include "format/sequence_header.h"
-#include "format/status.h"
 #include "geometry/triangle_fields.h"
+#include "sac/status.h"
 
 namespace sac {
 

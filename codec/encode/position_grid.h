@@ -2,8 +2,8 @@
 
 #include "codec/encode/i_frame_encoder.h"
 #include "format/sequence_header.h"
-#include "format/status.h"
-#include "geometry/mesh.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
 
 namespace sac {
 

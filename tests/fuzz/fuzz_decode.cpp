@@ -3,8 +3,8 @@
 #include <random>
 #include <vector>
 
-#include "codec/decode/decoder.h"
 #include "format/crc32.h"
+#include "sac/decoder.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/stream_mutation.h"
 
@@ -47,8 +47,8 @@ Outcome Decode(std::span<const std::uint8_t> stream, std::mt19937* chunks) {
     return std::all_of(triangles.begin(), triangles.end(),
                        [end](const Triangle& t) { return *std::max_element(t.begin(), t.end()) < end; });
   };
-  FUZZ_REQUIRE(mesh.positions.size() == decoder.header()->vertices);
-  FUZZ_REQUIRE(mesh.triangles.size() == decoder.header()->triangles);
+  FUZZ_REQUIRE(mesh.positions.size() == decoder.info()->vertices);
+  FUZZ_REQUIRE(mesh.triangles.size() == decoder.info()->triangles);
   FUZZ_REQUIRE(below(mesh.triangles, mesh.positions.size()));
   FUZZ_REQUIRE(below(mesh.uv_triangles, mesh.uvs.size()));
   FUZZ_REQUIRE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());

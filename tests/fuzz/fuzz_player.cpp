@@ -7,9 +7,9 @@
 #include <random>
 #include <vector>
 
-#include "codec/decode/decoder.h"
 #include "format/crc32.h"
 #include "format/stream_index.h"
+#include "sac/decoder.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/stream_mutation.h"
 
@@ -95,7 +95,7 @@ class Player {
   void Seek() {
     std::uint64_t byte = 0;
     const std::uint32_t frame = random_() >> random_() % 32;
-    const double rate = decoder_.header() ? decoder_.header()->frames_per_second() : 0;
+    const double rate = decoder_.info() ? decoder_.info()->frames_per_second() : 0;
     const Status status = random_() % 2 ? decoder_.Seek(frame, byte) : decoder_.SeekTime((frame + 0.5) / rate, byte);
     if (!status.ok()) return;
     FUZZ_REQUIRE(byte <= stream_.size() || whole_.empty());
@@ -142,7 +142,7 @@ class Player {
   // Fields are summed up in the order of decoding, so the last digits may differ: of turns by more than any step is
   // good for, all digits.
   void Compare(std::uint32_t index) const {
-    if (whole_.empty() || !(std::max(decoder_.header()->motion_step, decoder_.header()->rotation_step) <= 1)) return;
+    if (whole_.empty() || !(std::max(decoder_.info()->motion_step, decoder_.info()->rotation_step) <= 1)) return;
     FUZZ_REQUIRE(index < whole_.size());
     const Positions& expected = whole_[index];
     float largest = 0;

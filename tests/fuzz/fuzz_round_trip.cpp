@@ -6,8 +6,8 @@
 #include <numeric>
 #include <vector>
 
-#include "codec/decode/decoder.h"
-#include "codec/encode/encoder.h"
+#include "sac/decoder.h"
+#include "sac/encoder.h"
 #include "tests/fuzz/fuzz_target.h"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "format/limits.h"
+#include "sac/limits.h"
 
 // A target tries one input: libFuzzer calls it with what it makes up, replay_main.cpp with files.
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size);

@@ -18,7 +18,7 @@
 #include <string>
 #include <vector>
 
-#include "codec/decode/decoder.h"
+#include "sac/decoder.h"
 #include "tests/fuzz/fuzz_target.h"
 #include "tests/fuzz/stream_mutation.h"
 

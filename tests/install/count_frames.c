@@ -1,4 +1,4 @@
-#include <sac.h>
+#include <sac/sac.h>
 #include <stdio.h>
 
 int main(int argc, char** argv) {

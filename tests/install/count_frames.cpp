@@ -1,4 +1,4 @@
-#include <codec/decode/decoder.h>
+#include <sac/decoder.h>
 
 #include <cstdio>
 #include <fstream>

@@ -1,4 +1,4 @@
-/* The decoder of sac streams for C, and for what speaks C. codec/decode/decoder.h says more, for C++.
+/* The decoder of sac streams for C, and for what speaks C. decoder.h says more, for C++.
  *
  *   sac_settings settings;
  *   sac_settings_init(&settings);
@@ -27,11 +27,7 @@
 #include <stddef.h>
 #include <stdint.h>
 
-#if defined(_WIN32)
-#define SAC_API
-#else
-#define SAC_API __attribute__((visibility("default")))
-#endif
+#include "export.h"
 
 #ifdef __cplusplus
 extern "C" {

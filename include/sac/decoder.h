@@ -1,18 +1,16 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "codec/decode/lost_frames.h"
-#include "codec/decode/vertex_buffer.h"
-#include "format/limits.h"
-#include "format/sequence_header.h"
-#include "format/status.h"
-#include "geometry/bounding_box.h"
-#include "geometry/mesh.h"
+#include "sac/limits.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
+#include "sac/stream_info.h"
 
 namespace sac {
 
@@ -36,6 +34,31 @@ struct FrameInfo {
 
 struct DecodedFrame : FrameInfo {
   Positions positions;  // in the vertex order of the decoder's mesh, model units
+};
+
+enum class VertexFormat {
+  kFloat32,  // three floats
+  // Three integers of 16 bits. Positions: unsigned, low + (high - low) * x / 65535 of the frame's box. Normals: signed,
+  // x / 32767.
+  kInt16,
+};
+
+// The caller's memory for three components of each vertex: of vertex v at byte v * stride.
+struct VertexBuffer {
+  void* data = nullptr;    // null: not wanted
+  std::size_t size = 0;    // bytes
+  std::size_t stride = 0;  // bytes, at least those of a vertex
+  VertexFormat format = VertexFormat::kFloat32;
+};
+
+struct FrameBuffers {
+  VertexBuffer positions;
+  VertexBuffer normals;  // of the vertices, area-weighted means of their triangles', of length 1
+};
+
+// A run of frames.
+struct FrameRange {
+  std::uint32_t first = 0, count = 0;
 };
 
 // Turns a stream into frames. The bytes may come in any chunking:
@@ -109,8 +132,9 @@ class Decoder {
   // Forgets everything but the settings: another stream may begin.
   void Reset();
 
-  // The sequence header and the first frame's mesh with its static attributes; null before they have been decoded.
-  const SequenceHeader* header() const;
+  // What the stream says of itself, and the first frame's mesh with its static attributes; null before they have been
+  // decoded.
+  const StreamInfo* info() const;
   const Mesh* mesh() const;
   // Per vertex its index in the input; empty when the stream does not keep the order.
   const std::vector<std::uint32_t>& order() const;

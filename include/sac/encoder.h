@@ -6,11 +6,10 @@
 #include <span>
 #include <vector>
 
-#include "format/limits.h"
-#include "format/sequence_header.h"
-#include "format/status.h"
-#include "format/stream_writer.h"
-#include "geometry/mesh.h"
+#include "sac/limits.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
+#include "sac/stream_info.h"
 
 namespace sac {
 
@@ -72,7 +71,7 @@ class Encoder {
 
   // The index in the input of each decoded vertex.
   const std::vector<std::uint32_t>& order() const;
-  const SequenceHeader& header() const;
+  const StreamInfo& info() const;
   const StreamBytes& stream_bytes() const;
 
  private:

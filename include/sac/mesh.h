@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -11,6 +12,14 @@ using Triangle = std::array<std::uint32_t, 3>;
 
 // One frame's vertex positions, in model units.
 using Positions = std::vector<Vec3f>;
+
+// The axis-aligned box [low, high], model units.
+struct Box {
+  std::array<double, 3> low = {}, high = {};
+
+  std::array<double, 3> size() const { return {high[0] - low[0], high[1] - low[1], high[2] - low[2]}; }
+  double diagonal() const { return std::sqrt(size()[0] * size()[0] + size()[1] * size()[1] + size()[2] * size()[2]); }
+};
 
 // An indexed triangle mesh with the static attributes of a clip's first frame. Any list of triangles is a mesh: several
 // components, boundaries, non-manifold edges, isolated vertices and degenerate or duplicate triangles are all allowed.
