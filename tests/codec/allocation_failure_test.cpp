@@ -13,7 +13,7 @@
 #include <vector>
 
 #include "sac/decoder.h"
-#include "tests/counted_memory.h"
+#include "tests/codec/counted_memory.h"
 
 namespace sac {
 namespace {

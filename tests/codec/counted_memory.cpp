@@ -1,5 +1,5 @@
 // Replaces operator new, and malloc by the linker's --wrap.
-#include "tests/counted_memory.h"
+#include "tests/codec/counted_memory.h"
 
 #include <malloc.h>
 

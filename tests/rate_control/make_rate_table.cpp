@@ -3,7 +3,7 @@
 #include <cstdio>
 #include <fstream>
 
-#include "tests/rate_table.h"
+#include "tests/rate_control/rate_table.h"
 
 int main(int argc, char** argv) {
   if (argc != 2) {

@@ -1,4 +1,4 @@
-#include "tests/rate_table.h"
+#include "tests/rate_control/rate_table.h"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,7 @@
 #include "sac/decoder.h"
 #include "sac/encoder.h"
 #include "synth/synth.h"
-#include "tests/counted_memory.h"
+#include "tests/codec/counted_memory.h"
 
 namespace sac {
 namespace {
