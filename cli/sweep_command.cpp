@@ -11,13 +11,13 @@
 #include <thread>
 #include <vector>
 
+#include "bench/sweep/child_process.h"
+#include "bench/sweep/sweep_clip.h"
+#include "bench/sweep/sweep_codec.h"
+#include "bench/sweep/sweep_report.h"
+#include "bench/sweep/sweep_run.h"
 #include "cli/commands.h"
 #include "cli/number_option.h"
-#include "cli/sweep/child_process.h"
-#include "cli/sweep/sweep_clip.h"
-#include "cli/sweep/sweep_codec.h"
-#include "cli/sweep/sweep_report.h"
-#include "cli/sweep/sweep_run.h"
 
 namespace sac {
 namespace {

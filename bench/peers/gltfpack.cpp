@@ -10,7 +10,7 @@
 
 #include "bench/peers/gltf_file.h"
 #include "bench/peers/peer.h"
-#include "cli/sweep/child_process.h"
+#include "bench/sweep/child_process.h"
 #include "files/temporary_directory.h"
 
 namespace sac::bench {

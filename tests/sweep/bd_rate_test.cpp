@@ -1,4 +1,4 @@
-#include "cli/sweep/bd_rate.h"
+#include "bench/sweep/bd_rate.h"
 
 #include <gtest/gtest.h>
 

@@ -2,8 +2,8 @@
 
 #include <string>
 
+#include "bench/sweep/sweep_run.h"
 #include "cli/distortion_report.h"
-#include "cli/sweep/sweep_run.h"
 #include "sac/status.h"
 
 namespace sac {

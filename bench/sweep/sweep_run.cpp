@@ -1,4 +1,4 @@
-#include "cli/sweep/sweep_run.h"
+#include "bench/sweep/sweep_run.h"
 
 #include <atomic>
 #include <cstdio>
@@ -6,10 +6,10 @@
 #include <mutex>
 #include <thread>
 
+#include "bench/sweep/content_key.h"
+#include "bench/sweep/result_file.h"
 #include "cli/distortion_report.h"
 #include "cli/progress.h"
-#include "cli/sweep/content_key.h"
-#include "cli/sweep/result_file.h"
 #include "files/output_file.h"
 
 namespace sac {

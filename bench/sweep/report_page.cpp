@@ -1,4 +1,4 @@
-#include "cli/sweep/report_page.h"
+#include "bench/sweep/report_page.h"
 
 #include <cstdint>
 #include <string_view>

@@ -1,4 +1,4 @@
-#include "cli/sweep/result_file.h"
+#include "bench/sweep/result_file.h"
 
 #include <filesystem>
 #include <fstream>

@@ -1,4 +1,4 @@
-#include "cli/sweep/child_process.h"
+#include "bench/sweep/child_process.h"
 
 #include <fcntl.h>
 #include <malloc.h>

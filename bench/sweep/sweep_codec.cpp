@@ -1,11 +1,11 @@
-#include "cli/sweep/sweep_codec.h"
+#include "bench/sweep/sweep_codec.h"
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
-#include "cli/sweep/child_process.h"
-#include "cli/sweep/content_key.h"
+#include "bench/sweep/child_process.h"
+#include "bench/sweep/content_key.h"
 #include "sac/version.h"
 
 namespace sac {

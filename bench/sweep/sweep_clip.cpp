@@ -1,11 +1,11 @@
-#include "cli/sweep/sweep_clip.h"
+#include "bench/sweep/sweep_clip.h"
 
 #include <cmath>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
 
-#include "cli/sweep/content_key.h"
+#include "bench/sweep/content_key.h"
 #include "files/cache_file.h"
 #include "files/clip_input.h"
 #include "files/frame_pattern.h"

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "cli/sweep/display_mesh.h"
+#include "bench/sweep/display_mesh.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
 

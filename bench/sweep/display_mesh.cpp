@@ -1,4 +1,4 @@
-#include "cli/sweep/display_mesh.h"
+#include "bench/sweep/display_mesh.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "cli/sweep/content_key.h"
+#include "bench/sweep/content_key.h"
 
 #include <xxhash.h>
 

@@ -1,4 +1,4 @@
-#include "cli/sweep/sweep_report.h"
+#include "bench/sweep/sweep_report.h"
 
 #include <algorithm>
 #include <cmath>
@@ -7,10 +7,10 @@
 #include <limits>
 #include <sstream>
 
+#include "bench/sweep/bd_rate.h"
+#include "bench/sweep/report_page.h"
+#include "bench/sweep/result_file.h"
 #include "cli/distortion_report.h"
-#include "cli/sweep/bd_rate.h"
-#include "cli/sweep/report_page.h"
-#include "cli/sweep/result_file.h"
 #include "files/output_file.h"
 #include "sac/version.h"
 

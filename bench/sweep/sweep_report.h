@@ -3,9 +3,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/sweep/sweep_clip.h"
-#include "cli/sweep/sweep_codec.h"
-#include "cli/sweep/sweep_run.h"
+#include "bench/sweep/sweep_clip.h"
+#include "bench/sweep/sweep_codec.h"
+#include "bench/sweep/sweep_run.h"
 #include "sac/status.h"
 
 namespace sac {

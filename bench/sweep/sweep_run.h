@@ -4,9 +4,9 @@
 #include <string>
 #include <vector>
 
-#include "cli/sweep/child_process.h"
-#include "cli/sweep/sweep_clip.h"
-#include "cli/sweep/sweep_codec.h"
+#include "bench/sweep/child_process.h"
+#include "bench/sweep/sweep_clip.h"
+#include "bench/sweep/sweep_codec.h"
 #include "metrics/error_meter.h"
 #include "sac/status.h"
 
