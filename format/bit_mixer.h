@@ -9,10 +9,11 @@
 
 namespace sac {
 
-// What one context has seen of a bin: a probability of 1, in 1/65536, and how often it was asked (spec.md 7.4).
+// The state of one context of a bin: the probability that the bin is 1, in 1/65536, and the number of bins it has seen
+// (spec.md 7.4).
 class AdaptiveBit {
  public:
-  // Nearer to 0, which says nothing, the less it has seen.
+  // The logit of the probability, damped towards 0 (no information) while the context has seen few bins.
   std::int32_t logit() const { return Logit(probability_) * static_cast<std::int32_t>(kConfidence[count_]) >> 8; }
 
   void Update(bool bit) {
@@ -41,7 +42,8 @@ class AdaptiveBit {
   std::uint16_t count_ = 0;
 };
 
-// Weights of some inputs' logits, in 1/65536, which learn from every bin how far each input is to be trusted.
+// Mixes the logits of kInputs inputs with weights in 1/65536. The weights learn from every bin how reliable each input
+// is (spec.md 7.4).
 template <std::size_t kInputs>
 class Mixer {
  public:
@@ -55,7 +57,7 @@ class Mixer {
     return static_cast<std::int32_t>(std::clamp<std::int64_t>(sum >> 16, -kMaxLogit, kMaxLogit));
   }
 
-  // After a bin for which it said `mixed`.
+  // Updates the weights with the bin `bit`, for which Mix(inputs) returned `mixed`.
   void Learn(const Inputs& inputs, std::int32_t mixed, bool bit) {
     // Inputs are below 2^12 and errors below 2^14. Weights that a stream drives out of range wrap around.
     const std::int32_t error = (kRate * ((bit ? 65535 : 0) - Probability(mixed)) + 32) >> 6;
@@ -71,8 +73,9 @@ class Mixer {
   Inputs weights_;
 };
 
-// Codes a bin whose probability is the mean, as logits, of what two mixers make of the same inputs. The first inputs
-// are those of `states`, which Code() fills in and updates.
+// Codes a bin with the probability whose logit is the mean of the results of the mixers `first` and `second` on the
+// same inputs. The first kStates inputs are the logits of `states`: they are filled in here, and the states are
+// updated.
 template <class Coder, std::size_t kInputs, std::size_t kStates>
 void CodeMixed(Coder& coder, Mixer<kInputs>& first, Mixer<kInputs>& second, std::array<std::int32_t, kInputs>& inputs,
                const std::array<AdaptiveBit*, kStates>& states, bool& bit) {

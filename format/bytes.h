@@ -8,8 +8,8 @@
 
 namespace sac {
 
-// Little-endian bytes and varints (spec.md 2.2). A varint holds 7 bits a byte, least significant first, at most 5 bytes
-// and never a superfluous final zero byte, so that every value has one spelling.
+// Writes little-endian bytes and varints (spec.md 2.2). A varint holds 7 bits a byte, least significant first. It has
+// at most 5 bytes and never a superfluous final zero byte, so that every value has one spelling.
 class ByteWriter {
  public:
   void U8(std::uint8_t v) { bytes_.push_back(v); }

@@ -15,24 +15,25 @@
 
 namespace sac {
 
-// Bits of a group by what they say.
+// The bits of a group by what they code.
 struct FrameBits {
   double side = 0;
   std::array<double, kPlanes> planes = {};
 };
 
-// Codes the frames of one group in coding order; holds the adaptive models and the frames that contexts look at.
+// Codes the frames of one group in coding order. It holds the adaptive models and the frames that the contexts look at.
 // Encoder and decoder instantiate the same body.
 template <class Coder>
 class FrameCoder {
  public:
   FrameCoder(const SequenceHeader& header, const PlaneLayouts& layouts);
 
-  // Writes or reads `frame`, the one at `slot` of the group's structure. False when a residual or coefficient is out of
-  // range or the code ran past its end. `bits` accounts for what an encoder writes.
+  // Writes or reads `frame`, which stands at `slot` of the group's structure. Returns false when a residual or
+  // coefficient is out of range or when the code ran past its end. An encoder's bits are added to `bits` unless it is
+  // null.
   bool Code(Coder& coder, const FrameSlot& slot, FrameSyntax& frame, FrameBits* bits = nullptr);
 
-  // The coefficients of the frames coded so far.
+  // The predictor holds the coefficients of the frames coded so far.
   const Predictor& predictor() const { return predictor_; }
   std::vector<FrameCoefficients> TakeFrames() { return predictor_.TakeFrames(); }
 
@@ -46,7 +47,8 @@ class FrameCoder {
 
   bool CodeReferences(Coder& coder, const FrameSlot& slot, FrameSyntax& frame);
   bool CodeRigid(Coder& coder, LevelModels& models, std::array<std::int32_t, 6>& rigid);
-  // Residuals of a plane of the frame's first (0) or second (1) reference, or the only one twice.
+  // The residuals of `plane` of the first (i = 0) or second (i = 1) reference of `frame`. A single reference stands for
+  // both.
   std::span<const std::int32_t> ReferenceResiduals(const FrameSyntax& frame, std::size_t plane, std::size_t i) const;
   bool CodePlane(Coder& coder, BitModel& empty_model, std::size_t plane, FrameSyntax& frame);
 

@@ -8,7 +8,7 @@
 
 namespace sac {
 
-// What the bitstream carries of one frame, and nothing else (spec.md 6.2): integers, in units of the header's steps.
+// The syntax elements of one frame (spec.md 6.2). They are integers in units of the header's steps.
 struct FrameSyntax {
   FrameSlot slot;                          // references may differ from the structure's
   std::array<std::int32_t, 6> rigid = {};  // residual of rotation (3), translation (3)
@@ -17,9 +17,9 @@ struct FrameSyntax {
   bool intra() const { return slot.references.empty(); }
 };
 
-// Residuals of planes stay within this magnitude (spec.md 6.2).
+// The largest magnitude of a plane's residual (spec.md 6.2).
 inline constexpr std::int32_t kMaxResidual = 1 << 20;
-// Residuals of the rigid motion, and all coefficients (spec.md 6.3).
+// The largest magnitude of a rigid motion's residual and of any coefficient (spec.md 6.3).
 inline constexpr std::int32_t kMaxCoefficient = 1 << 28;
 
 }  // namespace sac

@@ -11,7 +11,7 @@
 
 namespace sac {
 
-// Two points of the Draco mesh that are one vertex.
+// States that two points of the Draco mesh are one vertex.
 struct Weld {
   std::uint32_t point;  // ascending from weld to weld
   std::uint32_t onto;   // a smaller point
@@ -24,11 +24,11 @@ struct LooseVertex {
   std::array<std::uint8_t, 4> color;      // when the mesh has colours
 };
 
-// The payload of an I-frame packet (spec.md 5): the mesh as Draco codes it, what Draco cannot code, and how to build
-// the harmonic basis.
+// The syntax elements of an I-frame packet (spec.md 5): the mesh as Draco codes it, the parts that Draco cannot code,
+// and the parameters of the harmonic basis.
 struct IFrameSyntax {
   std::vector<std::uint8_t> mesh;  // a Draco stream; empty when no triangle is left to it
-  // How finely the positions of Draco's mesh are coded, and their range code (spec.md 5.5).
+  // The step of the positions of Draco's mesh, and their range code (spec.md 5.5).
   std::uint32_t position_step = 16;  // 1/16 of a grid cell
   std::uint32_t position_slope = 0;  // 1/4096 of the length of edges
   std::vector<std::uint8_t> positions;
@@ -45,7 +45,7 @@ struct IFrameSyntax {
 
 std::vector<std::uint8_t> WriteIFrame(const IFrameSyntax& syntax, const SequenceHeader& header);
 
-// kCorrupt for a rule of spec.md 5.
+// Parses what WriteIFrame() writes. Returns kCorrupt when `payload` breaks a rule of spec.md 5.
 Status ParseIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& header, IFrameSyntax& syntax);
 
 }  // namespace sac

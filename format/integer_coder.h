@@ -8,8 +8,9 @@
 
 namespace sac {
 
-// Adaptive Exp-Golomb code of an unsigned integer up to 2^32 - 2 (spec.md 7.3): the number of bits of value + 1 in
-// unary, each step with its own model, then the bits below the leading one as they are.
+// The models of the adaptive Exp-Golomb code of an unsigned integer up to 2^32 - 2 (spec.md 7.3). The code is the
+// number of bits of value + 1 in unary, each step with its own model, then the bits below the leading one without
+// models.
 struct UnsignedModels {
   std::array<BitModel, 32> prefix;
 };
@@ -31,8 +32,8 @@ void CodeUnsigned(Coder& coder, UnsignedModels& models, std::uint32_t& value) {
   if constexpr (Coder::kDecodes) value = ((1u << width) | low) - 1;
 }
 
-// A magnitude of 1 or more in unary (spec.md 7.4): `code_bin(n, more)` codes whether it is above n, for n from 1 to
-// `bins`. Returns the magnitude, or bins + 1 for all that are above.
+// Codes a magnitude of 1 or more in unary (spec.md 7.4). `code_bin(n, more)` codes whether the magnitude is above n,
+// for n from 1 to `bins`. Returns the magnitude, or bins + 1 when it is larger than `bins`.
 template <class Coder, class CodeBin>
 std::uint32_t CodeUnary(std::uint32_t magnitude, std::uint32_t bins, CodeBin&& code_bin) {
   for (std::uint32_t n = 1; n <= bins; ++n) {
@@ -43,7 +44,8 @@ std::uint32_t CodeUnary(std::uint32_t magnitude, std::uint32_t bins, CodeBin&& c
   return bins + 1;
 }
 
-// A signed integer of magnitude below 2^31: a zero flag, the sign as it is, the magnitude minus one.
+// The models of a signed integer of magnitude below 2^31. The code is a zero flag, the sign without a model, and the
+// magnitude minus one.
 struct SignedModels {
   BitModel nonzero;
   UnsignedModels magnitude;

@@ -8,8 +8,8 @@
 
 namespace sac {
 
-// The scale on which predictions are mixed (spec.md 7.4): a logit is ln(p / (1 - p)) in 1/256, a probability is in
-// 1/65536. Integers alone, so that every decoder mixes alike.
+// Predictions are mixed as logits (spec.md 7.4): a logit is ln(p / (1 - p)) in 1/256, a probability is in 1/65536. Both
+// are integers, so that every decoder mixes alike.
 inline constexpr std::int32_t kMaxLogit = 2816;
 
 // The probability of logit 128 k.
@@ -45,10 +45,11 @@ inline std::int32_t Probability(std::int32_t logit) {
   return kLogisticTables.probability[static_cast<std::size_t>(std::clamp(logit, -kMaxLogit, kMaxLogit) + kMaxLogit)];
 }
 
-// The least logit whose probability is not below that of the middle of p's sixteen.
+// The least logit whose probability is at least that of the middle of the sixteen values that share p >> 4.
 inline std::int32_t Logit(std::uint32_t p) { return kLogisticTables.logit[p >> 4]; }
 
-// Two classes an octave: 0, 1, 2, 3, then 4 for 4 and 5, 5 for 6 and 7, 6 for 8 to 11 and so on.
+// The class of `x` in half octaves: 0, 1, 2 and 3 are their own classes, then 4 holds 4 and 5, 5 holds 6 and 7, 6 holds
+// 8 to 11, two classes an octave.
 inline std::uint32_t HalfOctave(std::uint32_t x) {
   if (x < 4) return x;
   const auto octave = static_cast<std::uint32_t>(std::bit_width(x)) - 1;

@@ -18,9 +18,9 @@ enum class PacketType : std::uint8_t {
   kIFrame = 1,  // the first frame's mesh and the basis, second
   kGroup = 2,   // frames
   kEnd = 3,     // number of frames, last
-  // These have no tag: they are the records that follow the packet of an open group.
-  kFrame = 4,     // one frame of it
-  kGroupEnd = 5,  // no more of them
+  // Types of the records that follow the packet of an open group. Records have no tag.
+  kFrame = 4,     // one frame of the open group
+  kGroupEnd = 5,  // the end of the open group
 };
 
 struct Packet {
@@ -28,56 +28,58 @@ struct Packet {
   std::vector<std::uint8_t> payload;
 };
 
-// The bytes of a packet (spec.md 3): varint(payload size * 4 + type), payload, CRC-32 of both.
+// Returns the bytes of a packet (spec.md 3): varint(payload size * 4 + type), payload, CRC-32 of both.
 std::vector<std::uint8_t> WritePacket(PacketType type, std::span<const std::uint8_t> payload);
 
-// The bytes of a packet with a payload of so many.
+// The size in bytes of a packet whose payload has `payload` bytes.
 std::size_t PacketSize(std::size_t payload);
 
-// The inverse of WritePacket(). False unless `bytes` are one whole packet with the right CRC.
+// Parses what WritePacket() writes. Returns false unless `bytes` are one whole packet with the right CRC-32.
 bool ParsePacket(std::span<const std::uint8_t> bytes, Packet& packet);
 
-// The records of an open group, whose frames follow as they come (spec.md 3.1).
+// Writes the records of an open group, one for each frame as it comes (spec.md 3.1).
 class RecordWriter {
  public:
-  // The packet that opens the group whose first frame has this number.
+  // Returns the packet that opens the group whose first frame has the number `first_frame` in the clip.
   std::vector<std::uint8_t> Open(std::uint32_t first_frame);
-  // varint(size + 1), the code, one byte of the CRC-32 of all so far.
+  // Returns the record of a frame: varint(size + 1), the code, one byte of the CRC-32 of the group so far.
   std::vector<std::uint8_t> Frame(std::span<const std::uint8_t> code);
-  // varint(0), the CRC-32 of all.
+  // Returns the record that ends the group: varint(0), the CRC-32 of the group.
   std::vector<std::uint8_t> End();
 
  private:
   std::uint32_t crc_ = 0;
 };
 
-// The error of a stream that ends before its end packet, after so many bytes and frames.
+// The error of a stream that ends before its end packet, after `bytes` bytes and `frames` frames.
 Status Truncated(std::uint64_t bytes, std::uint64_t frames);
 
-// Cuts a stream, which may arrive in any chunking, into packets and the records of open groups. Holds the bytes of
-// at most one.
+// Cuts a stream, which may arrive in any chunking, into packets and the records of open groups. The reader holds the
+// bytes of at most one packet or record.
 class PacketReader {
  public:
   explicit PacketReader(const Limits& limits) : limits_(limits) {}
 
   // Takes bytes from the front of `bytes` until a packet is complete or `bytes` is empty; `packet` is empty in the
-  // latter case. kCorrupt: not a .sac stream, a malformed tag or a wrong CRC; kLimit: a packet over the limit.
+  // latter case. Returns kCorrupt when the bytes are no .sac stream, a tag is malformed or a CRC-32 is wrong, and
+  // kLimit when a packet is larger than the limit.
   Status Read(std::span<const std::uint8_t>& bytes, std::optional<Packet>& packet);
 
   // Whether the stream could end here: no packet has begun, no group is open.
   bool AtBoundary() const { return magic_seen_ && pending_.empty() && !in_open_group_; }
-  // Goes on at byte `position` of the stream, where a packet begins, or the first record of an open group.
+  // Continues at byte `position` of the stream, where a packet begins or, with `in_open_group`, the first record of an
+  // open group.
   void Restart(std::uint64_t position, bool in_open_group);
-  // The bytes of a packet that has begun, or whose checksum is wrong. They are forgotten here.
+  // Returns the bytes of a packet that has begun or whose CRC-32 is wrong, and forgets them.
   std::vector<std::uint8_t> TakePending();
-  // Bytes taken so far.
+  // The number of bytes taken so far.
   std::uint64_t position() const { return position_; }
   bool IsBetweenPackets() const { return pending_.empty(); }
 
  private:
-  // Judges the tag, or the size of a record, that is pending.
+  // Checks the pending tag or size of a record.
   Status TakeTag();
-  // Judges the checksum and makes a packet of what is pending.
+  // Checks the CRC-32 of the pending bytes and makes a packet of them.
   Status TakePacket(Packet& packet);
 
   Limits limits_;

@@ -11,16 +11,17 @@
 
 namespace sac {
 
-// Finds the next packet in bytes whose packets have lost their frame, by damage or by joining in the middle: the first
-// sequence header, group or end packet to be complete, at whatever byte it begins, whose CRC-32 is right. Every byte
-// may begin a packet; the CRCs of all are had from the CRC of the bytes so far, so that time is linear in the bytes.
+// Finds the next packet where packet borders are unknown, after damage or after joining a stream in the middle. The
+// result is the first sequence header, group or end packet to be complete, at whatever byte it begins, whose CRC-32 is
+// right. Every byte may begin a packet. The CRC-32 of each candidate follows from the CRC-32 of the bytes so far, so
+// that time is linear in the bytes.
 class PacketSearch {
  public:
   explicit PacketSearch(const Limits& limits);
 
-  // Takes bytes from the front of `bytes` until a packet is complete, which ends the search, or `bytes` is empty.
-  // Holds the bytes of the largest packet that is looked for, 16 MB at most, and up to 50 bytes for each; larger
-  // packets are not found.
+  // Takes bytes from the front of `bytes` until a packet is complete, which ends the search, or until `bytes` is empty.
+  // The search holds as many bytes as the largest packet it looks for, at most 16 MB, and up to 50 bytes of memory for
+  // each of them. It does not find larger packets.
   void Read(std::span<const std::uint8_t>& bytes, std::optional<Packet>& packet);
 
  private:
@@ -34,9 +35,9 @@ class PacketSearch {
     std::uint32_t crc_before;
   };
 
-  // Whether the bytes from `start` on are a tag; false as long as it is not whole.
+  // Whether the bytes from `start` on are a whole tag.
   bool TakeStart(const Start& start);
-  // Forgets bytes that no candidate needs.
+  // Drops bytes that no candidate needs.
   void Trim();
 
   std::uint32_t most_payload_;

@@ -20,7 +20,8 @@ enum Plane : std::size_t {
 inline constexpr std::size_t kPlanes = 4;
 inline constexpr std::array<const char*, kPlanes> kPlaneNames = {"motion", "displacement", "detail", "correction"};
 
-// The size of a plane, and what contexts know of its rows. A plane's coefficients are stored row by row.
+// The shape of a plane, rows x channels, and the class of each row for the contexts. A plane's coefficients are stored
+// row by row.
 struct PlaneLayout {
   std::size_t channels = 0;
   std::vector<std::uint8_t> row_classes;  // of each row, 1..23; no rows when the stream has no such plane
@@ -29,18 +30,19 @@ struct PlaneLayout {
 };
 using PlaneLayouts = std::array<PlaneLayout, kPlanes>;
 
-// From the header, the harmonics of each component and the vertices of each patch.
+// Lays out the planes of a stream. `harmonics` holds the number of harmonics of each component, `patches` the number of
+// vertices of each patch.
 PlaneLayouts LayOutPlanes(const SequenceHeader& header, std::span<const std::uint32_t> harmonics,
                           std::span<const std::uint32_t> patches);
 
-// Coefficients of one frame, all planes together.
+// The number of coefficients of one frame, over all planes.
 std::uint64_t FrameValues(const PlaneLayouts& layouts);
 
-// Coefficients of a plane, as PlaneLayout orders them.
+// The coefficients of a plane in the order of its PlaneLayout.
 using PlaneValues = std::vector<std::int32_t>;
 using FramePlanes = std::array<PlaneValues, kPlanes>;
 
-// All zero.
+// Planes whose coefficients are all zero.
 FramePlanes EmptyPlanes(const PlaneLayouts& layouts);
 
 }  // namespace sac

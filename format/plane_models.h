@@ -19,7 +19,7 @@ class PlaneModels {
 
   ResidualContexts contexts;
 
-  // Writes or reads a residual. False when its magnitude is out of range.
+  // Writes or reads a residual. Returns false when its magnitude is out of range.
   template <class Coder>
   bool Code(Coder& coder, const ResidualContext& context, std::int32_t& value);
 
@@ -30,7 +30,7 @@ class PlaneModels {
 
   using ResidualMixer = Mixer<kInputs>;
   using SignMixer = Mixer<2>;
-  // The bins of one residual that share a context: whether it is zero, then the unary ones.
+  // The bins of one residual that share a context: first whether it is zero, then the unary bins.
   using Bins = std::array<AdaptiveBit, 1 + kUnary>;
 
   template <class Coder>

@@ -16,8 +16,8 @@ constexpr std::array<std::uint32_t, kYoung + 1> Rates(std::uint32_t floor) {
   return rates;
 }
 
-// The end of a code: of the integers from `low` to `low` + `range` - 1 the multiple of the greatest power of two. There
-// is one: of two next to each other, one is a multiple of the power above.
+// The end of a code: the multiple of the greatest power of two among the integers from `low` to `low` + `range` - 1. It
+// is unique, since of two neighbouring multiples of a power of two one is a multiple of the next power.
 std::uint64_t RoundestBetween(std::uint32_t low, std::uint32_t range) {
   for (int bits = 32;; --bits) {
     const std::uint64_t unit = std::uint64_t{1} << bits, value = (low + unit - 1) / unit * unit;

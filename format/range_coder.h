@@ -8,10 +8,11 @@
 
 namespace sac {
 
-// Probability that a bin is 1: the mean of a fast and a slow estimator, both faster while young (spec.md 7.2).
+// Estimates the probability that a bin is 1 as the mean of a fast and a slow estimator. Both adapt faster while they
+// have seen few bins (spec.md 7.2).
 class BitModel {
  public:
-  // In 1/32768, from 8 to 32760.
+  // The probability in 1/32768, from 8 to 32760.
   std::uint32_t probability() const {
     const std::uint32_t p = (fast_ + slow_) >> 2;
     return p < 8 ? 8 : p > 32760 ? 32760 : p;
@@ -24,22 +25,22 @@ class BitModel {
   std::uint32_t count_ = 0;
 };
 
-// A binary range coder over 32 bits (spec.md 7.1). Encoder and decoder offer the same calls, which write or read their
-// argument, so that one template per syntax element serves both directions.
+// A binary range encoder with 32 bits of state (spec.md 7.1). Encoder and decoder have the same calls, which write or
+// read their argument, so that one template per syntax element serves both directions.
 class RangeEncoder {
  public:
   static constexpr bool kDecodes = false;
 
   void Bit(BitModel& model, bool& bit);
-  // A bin that is 1 with a probability of `p` / 65536, from 1 to 65535.
+  // Codes a bin that is 1 with a probability of p / 65536; `p` is from 1 to 65535.
   void Decide(std::uint32_t p, bool& bit);
-  // `count` bits of equal probability, most significant first.
+  // Codes the low `count` bits of `value` with equal probabilities, the most significant one first.
   void Raw(std::uint32_t& value, int count);
   bool ok() const { return true; }
 
-  // Ends the code with the fewest bytes and returns all of them; the zeros among the last four are left out.
+  // Ends the code with the fewest bytes and returns the whole code. Zeros among the last four bytes are left out.
   std::vector<std::uint8_t> Finish();
-  // Length of the code so far in bits, to account for its parts.
+  // The length of the code so far in bits, for accounts of its parts.
   double bits() const {
     return 8.0 * static_cast<double>(bytes_.size()) + 32.0 - std::log2(static_cast<double>(range_));
   }
@@ -53,8 +54,9 @@ class RangeEncoder {
   std::uint32_t range_ = 0xffffffffu;
 };
 
-// Reads the code of a RangeEncoder. Bytes after the end read as zero; reading more than the four that an encoder may
-// have left out latches ok() to false. Never reads outside the span, never fails otherwise.
+// Reads the code of a RangeEncoder. Bytes after the end read as zero, and ok() becomes false for good once more than
+// the four bytes that an encoder may leave out have been read. The decoder never reads outside the span and has no
+// other failure.
 class RangeDecoder {
  public:
   static constexpr bool kDecodes = true;
@@ -65,9 +67,11 @@ class RangeDecoder {
   void Decide(std::uint32_t p, bool& bit);
   void Raw(std::uint32_t& value, int count);
   bool ok() const { return position_ <= bytes_.size() + 4; }
-  // Whether the code ends where the bytes do, and as an encoder ends it (spec.md 7.1): no other bytes say the same.
+  // Whether the code ends where the bytes do and in the way in which an encoder ends it (spec.md 7.1), so that no other
+  // bytes mean the same.
   bool AtEnd() const;
-  // Whether what was read would be the same if other bytes followed: of a code that is cut off, all else is made up.
+  // Whether everything read so far is the same for any bytes that may follow. In a code that is cut off, everything
+  // after that point is made up.
   bool IsCertain() const;
 
  private:

@@ -11,7 +11,7 @@
 
 namespace sac {
 
-// What the bins of one residual are predicted from (spec.md 7.4).
+// The inputs from which the bins of one residual are predicted (spec.md 7.4).
 struct ResidualContext {
   static constexpr std::size_t kStates = 6, kFeatures = 6;
 
@@ -22,7 +22,7 @@ struct ResidualContext {
   std::array<std::size_t, 2> sign_states;        // the contexts of the sign
 };
 
-// What is known of the residuals of a plane before each of them is coded, through the frames of a group.
+// Derives the context of each residual of a plane from what is known before it is coded, over the frames of a group.
 class ResidualContexts {
  public:
   static constexpr std::size_t kActivities = 24;
@@ -31,22 +31,22 @@ class ResidualContexts {
 
   explicit ResidualContexts(const PlaneLayout& layout);
 
-  // How many contexts of each kind there are.
+  // The number of contexts of each kind.
   const std::array<std::size_t, ResidualContext::kStates>& sizes() const { return sizes_; }
 
-  // Begins a frame of a level and its step. `references` hold the coefficients of `plane`, `first` and `second` the
-  // residuals of its references, or zeros.
+  // Begins a frame of pyramid level `level`, whose step is `step`. `references` holds the coefficients of `plane`;
+  // `first` and `second` are the residuals of the frame's references, or zeros.
   void Start(std::uint32_t level, std::int32_t step, std::size_t plane, const ReferenceFrames& references,
              std::span<const std::int32_t> first, std::span<const std::int32_t> second);
-  // Of the next residual, in order.
+  // Returns the context of the next residual, in the order of the plane.
   ResidualContext Next();
-  // What it turned out to be.
+  // Records the value of the residual whose context Next() returned last.
   void Put(std::int32_t residual);
-  // Ends the frame, whose residuals are `values`.
+  // Ends the frame. `values` holds all of its residuals.
   void Finish(std::span<const std::int32_t> values);
 
  private:
-  // Of one place in the plane, known before the frame's residuals are.
+  // The part of the context of one coefficient that is known before the frame's residuals are.
   struct Place {
     std::uint32_t around = 0;         // the references' magnitudes here and in the rows beside
     std::uint8_t recent = 0;          // classes of magnitudes of frames before: here,

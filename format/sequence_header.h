@@ -14,8 +14,8 @@ namespace sac {
 inline constexpr std::uint8_t kVersionMajor = SAC_STREAM_VERSION_MAJOR;
 inline constexpr std::uint8_t kVersionMinor = SAC_STREAM_VERSION_MINOR;
 
-// The sequence header, in the order of the bitstream (spec.md 4). Steps are finite and positive, those of planes that
-// may be left out zero or more.
+// The sequence header in the order of the bitstream (spec.md 4). Steps are finite and positive; the steps of planes
+// that a stream may leave out may be zero.
 struct SequenceHeader {
   std::uint8_t version_major = kVersionMajor;
   std::uint8_t version_minor = kVersionMinor;
@@ -45,7 +45,8 @@ struct SequenceHeader {
   }
 };
 
-// The one list of fields: reading, writing and printing all walk it.
+// Calls `visit(name, field)` for each field in the order of the bitstream. Reading, writing and printing all use this
+// list.
 template <class Header, class Visitor>
 void VisitFields(Header& h, Visitor&& visit) {
   visit("version_major", h.version_major);
@@ -71,14 +72,14 @@ void VisitFields(Header& h, Visitor&& visit) {
   visit("translation_step", h.translation_step);
 }
 
-// The payload of a header packet: u8 as one byte, u32 as varints, floats as four bytes.
+// Returns the payload of a header packet: u8 fields as one byte, u32 fields as varints, floats as four bytes.
 std::vector<std::uint8_t> WriteSequenceHeader(const SequenceHeader& header);
 
-// Parses and checks every field. kUnsupported for another version, kCorrupt for a rule of spec.md 4, kLimit beyond
-// `limits`.
+// Parses and checks every field. Returns kUnsupported for another version, kCorrupt when a rule of spec.md 4 is broken,
+// and kLimit when `limits` are exceeded.
 Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& limits, SequenceHeader& header);
 
-// What of the header matters to those who play or make a stream.
+// The part of the header that callers of the libraries get.
 StreamInfo InfoOf(const SequenceHeader& header);
 
 }  // namespace sac

@@ -13,8 +13,8 @@ namespace sac {
 // Where the groups of a stream begin (spec.md 3.2).
 struct StreamIndex {
   struct Group {
-    std::uint32_t bytes = 0;   // from its packet to the next group's, or to the end packet
-    std::uint32_t frames = 0;  // of it
+    std::uint32_t bytes = 0;   // from the group's packet to the next group's or to the end packet
+    std::uint32_t frames = 0;  // in the group
     bool operator==(const Group&) const = default;
   };
 
@@ -24,24 +24,26 @@ struct StreamIndex {
   bool operator==(const StreamIndex&) const = default;
 };
 
-// What an end packet says.
+// The syntax elements of an end packet (spec.md 3.2).
 struct EndSyntax {
   std::uint32_t frames = 0;  // of the stream
   std::optional<StreamIndex> index;
 };
 
-// The payload of an end packet.
+// Returns the payload of an end packet.
 std::vector<std::uint8_t> WriteEnd(const EndSyntax& end);
 
-// The inverse. kCorrupt when malformed; kLimit when the index takes more memory than the limit.
+// Parses what WriteEnd() writes. Returns kCorrupt when the payload is malformed, and kLimit when the index takes more
+// memory than the limit.
 Status ParseEnd(std::span<const std::uint8_t> payload, const Limits& limits, EndSyntax& end);
 
-// A stream with an index tells in its last bytes how large its end packet is.
+// The number of bytes at the end of a stream with an index that state the size of its end packet.
 inline constexpr std::size_t kStreamTail = 8;
 
-// The index of a stream whose last bytes are `tail`. kNeedMoreData when the end packet is larger than `tail`: `needed`
-// says how many of the last bytes hold it. kInvalidArgument when the stream has no index, or is not whole, or the end
-// packet is larger than the limit; kLimit likewise of the index.
+// Reads the index of a stream whose last bytes are `tail`. Returns kNeedMoreData when the end packet is larger than
+// `tail`; `needed` is then the number of last bytes that hold it. Returns kInvalidArgument when the stream has no index
+// or is not whole or when its end packet is larger than the limit, and kLimit when the index takes more memory than the
+// limit.
 Status ReadIndex(std::span<const std::uint8_t> tail, const Limits& limits, StreamIndex& index, std::size_t& needed);
 
 }  // namespace sac

@@ -11,17 +11,17 @@
 
 namespace sac {
 
-// Puts packets together to a stream (spec.md 3), and keeps account of them.
+// Joins packets to a stream (spec.md 3) and counts their bytes by what they code.
 class StreamWriter {
  public:
-  // `index`: ends the stream with an index, if it has more than one group. `repeat_start`: writes header and I-frame
-  // again before every so many groups; 0: never.
+  // With `index`, a stream of more than one group ends with an index. Header and I-frame are written again before every
+  // `repeat_start`-th group, never when it is 0.
   StreamWriter(bool index, std::uint32_t repeat_start) : wants_index_(index), repeat_start_(repeat_start) {}
 
   void Start(std::span<const std::uint8_t> header, std::span<const std::uint8_t> i_frame);
-  // A group's code, of which `bits` say what belongs to the planes.
+  // Appends a group with the range code `code`. `bits` are the bits of its planes.
   void Group(const GroupSyntax& group, std::span<const std::uint8_t> code, const FrameBits& bits);
-  // A group whose frames come one by one.
+  // Begins a group whose frames come one by one, until CloseGroup().
   void OpenGroup();
   void Frame(std::span<const std::uint8_t> code, const FrameBits& bits);
   void CloseGroup();
@@ -29,12 +29,12 @@ class StreamWriter {
 
   std::uint32_t frames() const { return frames_; }
   const StreamBytes& sizes() const { return sizes_; }
-  // What has been written since the last call.
+  // Returns the bytes that have been written since the last call.
   std::vector<std::uint8_t> TakeBytes();
 
  private:
   void Append(std::span<const std::uint8_t> more, double StreamBytes::*part);
-  // Whole bytes for the planes of what was appended last, the rest stays side information.
+  // Moves whole bytes of what was appended last from the side information to the planes, as `bits` says.
   void Account(const FrameBits& bits, double side_before);
   void BeginGroup();
 
