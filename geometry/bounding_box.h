@@ -4,7 +4,7 @@
 
 namespace sac {
 
-// A point at the origin for no positions.
+// The smallest axis-aligned box around `positions`, model units. Without positions it is the origin.
 Box BoundingBox(const Positions& positions);
 
 }  // namespace sac

@@ -14,8 +14,8 @@ struct Component {
   std::uint32_t count;
 };
 
-// Labels each of `vertices` vertices with its connected component over the edges of `triangles`, degenerate ones
-// included. Components are numbered by their smallest vertex.
+// Returns for each of `vertices` vertices the number of its connected component over the edges of `triangles`,
+// degenerate triangles included. Components are numbered by their smallest vertex; `components` becomes their count.
 std::vector<std::uint32_t> LabelComponents(std::uint32_t vertices, std::span<const Triangle> triangles,
                                            std::uint32_t& components);
 

@@ -10,23 +10,27 @@
 
 namespace sac {
 
-// The undirected edges of a triangle mesh, each once, sorted; degenerate triangles' edges included, loops left out.
+// The undirected edges of a triangle mesh, each once, in ascending order. Edges of degenerate triangles are included,
+// loops from a vertex to itself are not.
 struct EdgeList {
   std::vector<std::array<std::uint32_t, 2>> ends;         // smaller vertex first
   std::vector<std::array<std::uint32_t, 3>> of_triangle;  // edge opposite corner k of triangle j; kNone for a loop
   static constexpr std::uint32_t kNone = 0xffffffffu;
 };
 
+// The edges of `triangles`.
 EdgeList BuildEdges(std::span<const Triangle> triangles);
 
-// The edges, as a range of indices, whose smaller vertex is in [first, first + count).
+// A range of edges [begin, begin + count) of an EdgeList.
 struct EdgeRange {
   std::size_t begin;
   std::size_t count;
 };
+
+// The edges whose smaller vertex is in [first, first + count).
 EdgeRange EdgesOf(const EdgeList& edges, std::uint32_t first, std::uint32_t count);
 
-// Which vertices an edge joins: vertex v has neighbours[offsets[v]] to neighbours[offsets[v + 1] - 1].
+// The neighbours of each vertex along edges: vertex v has neighbours[offsets[v]] to neighbours[offsets[v + 1] - 1].
 struct VertexGraph {
   std::vector<std::uint32_t> offsets;
   std::vector<std::uint32_t> neighbours;

@@ -12,21 +12,23 @@
 
 namespace sac {
 
-// One column an axis, one row a vertex.
+// Positions as a matrix: one row a vertex, one column an axis.
 using PositionMatrix = Eigen::Matrix<double, Eigen::Dynamic, 3>;
 
-// Cotangent weight of each edge (spec.md 6.4.1): half the sum of the cotangents opposite it, at least kMinWeight, so
-// that every connected component's Laplacian has exactly one zero eigenvalue whatever the triangles are like.
+// The cotangent weight of each edge (spec.md 6.4.1): half the sum of the cotangents opposite the edge, at least
+// kMinWeight. The bound gives the Laplacian of every connected component exactly one zero eigenvalue, whatever the
+// triangles are like.
 std::vector<double> CotangentWeights(const PositionMatrix& positions, std::span<const Triangle> triangles,
                                      const EdgeList& edges);
 inline constexpr double kMinWeight = 1e-3;
 
-// A third of the areas of the triangles around each vertex, at least a thousandth of the mean; sums to 1
-// (spec.md 6.4.1).
+// The mass of each vertex: a third of the areas of the triangles around it, at least a thousandth of the mean, scaled
+// so that all masses sum to 1 (spec.md 6.4.1).
 Eigen::VectorXd VertexMasses(const PositionMatrix& positions, std::span<const Triangle> triangles);
 
-// The symmetric matrix with -weights off the diagonal and zero row sums, of the vertices [first, first + count), whose
-// edges `ends` are. Lower triangle only.
+// The Laplacian of the vertices [first, first + count): the symmetric matrix with -weights off the diagonal and row
+// sums of zero, of which only the lower triangle is stored. `ends` and `weights` belong to the edges whose smaller
+// vertex is in that range; edges that leave it are ignored.
 Eigen::SparseMatrix<double> LaplacianMatrix(std::span<const std::array<std::uint32_t, 2>> ends,
                                             std::span<const double> weights, std::uint32_t first, std::uint32_t count);
 

@@ -6,7 +6,8 @@
 
 namespace sac {
 
-// Area-weighted vertex normals of length 1; zero where a vertex has no area around it.
+// The normals of the vertices: means of the normals of the triangles around a vertex, weighted by area, of length 1.
+// The normal of a vertex without area around it is zero.
 std::vector<Vec3f> VertexNormals(const Positions& positions, const std::vector<Triangle>& triangles);
 
 }  // namespace sac

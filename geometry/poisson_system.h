@@ -17,14 +17,16 @@ using DeformationGradients = std::vector<Eigen::Matrix3d>;  // one a vertex
 // which is the Poisson problem of Sumner and Popovic 2004 with the deformation gradients J at vertices.
 class PoissonSystem {
  public:
-  // `edges` and `components` are the mesh's; the vertices of a component are consecutive. `masses`: the area share of
-  // each vertex. All must outlive the system.
+  // `edges` and `components` belong to the mesh; the vertices of a component are consecutive. `masses` holds the share
+  // of each vertex in the area. All three must outlive the system.
   PoissonSystem(const EdgeList& edges, std::span<const Component> components, const Eigen::VectorXd& masses);
 
-  // Takes `reference`, with its cotangent weights, as y. False when the factorization fails.
+  // Sets the reference shape y and its cotangent weights, one for each edge. Returns false when the factorization
+  // fails.
   bool SetReference(const PositionMatrix& reference, std::vector<double> weights);
 
-  // The deformed positions. Each component's area-weighted centroid is the reference's.
+  // Returns the deformed positions for `gradients`, one a vertex. The area-weighted centroid of each component is that
+  // of the reference. The result stays valid until the next call.
   const PositionMatrix& Solve(const DeformationGradients& gradients);
 
  private:

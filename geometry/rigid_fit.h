@@ -6,14 +6,14 @@
 
 namespace sac {
 
-// The rotation R and translation t that bring `from` nearest to `to` in the least squares: to ~ R (from - centre) +
-// centre + t (Kabsch 1976).
+// A rotation R and a translation t about a given centre: x becomes R (x - centre) + centre + t.
 struct RigidFit {
   Eigen::Matrix3d rotation;
   Eigen::Vector3d translation;
   double residual;  // root mean square distance left
 };
 
+// The motion that brings the points `from` nearest to the points `to` in the least squares (Kabsch 1976).
 RigidFit FitRigid(const PositionMatrix& from, const PositionMatrix& to, const Eigen::RowVector3d& centre);
 
 }  // namespace sac

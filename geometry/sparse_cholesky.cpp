@@ -7,7 +7,7 @@ namespace sac {
 
 // As Eigen's symbolic factorization does (T. Davis, "Algorithm 849: a concise sparse Cholesky factorization package",
 // 2005): row k of the factor is what the paths from its entries to the root of the elimination tree pass.
-bool SparseCholesky::Count(const CholMatrixType& ordered, const FactorSize& most) {
+bool SparseCholesky::Count(const CholMatrixType& ordered, const FactorSize& limit) {
   size_ = {0, 0};
   const auto n = static_cast<std::size_t>(ordered.cols());
   std::vector<int> parent(n, -1), reached(n, -1);
@@ -23,16 +23,16 @@ bool SparseCholesky::Count(const CholMatrixType& ordered, const FactorSize& most
         size_.work += 2.0 * ++below[i] + 1;
       }
     }
-    if (size_.values > most.values || size_.work > most.work) return false;
+    if (size_.values > limit.values || size_.work > limit.work) return false;
   }
   return true;
 }
 
-bool SparseCholesky::Analyze(const Matrix& matrix, const FactorSize& most) {
+bool SparseCholesky::Analyze(const Matrix& matrix, const FactorSize& limit) {
   CholMatrixType storage(matrix.rows(), matrix.cols());
   ConstCholMatrixPtr ordered = nullptr;
   ordering(matrix, ordered, storage);
-  if (!Count(*ordered, most)) return false;
+  if (!Count(*ordered, limit)) return false;
   analyzePattern_preordered(*ordered, true);
   return true;
 }

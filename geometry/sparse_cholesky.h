@@ -9,35 +9,37 @@ namespace sac {
 
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-// What a factorization takes: values below the diagonal of the factor, of 12 bytes each, and multiplications, about.
+// The cost of a factorization: the values below the diagonal of the factor, of 12 bytes each, and approximately the
+// number of multiplications.
 struct FactorSize {
   std::uint64_t values = std::numeric_limits<std::int32_t>::max();
   double work = std::numeric_limits<double>::infinity();
 };
 
-// L D L^T of a sparse symmetric matrix, of which only the lower triangle is read. How much L fills up depends on the
-// mesh alone, and connectivity that is no surface's makes it as good as dense. So its size is counted before it is
-// allocated. Eigen counts in 32 bits, and writes out of bounds when they are too few.
+// The factorization L D L^T of a sparse symmetric matrix, of which only the lower triangle is read. The size of L
+// depends on the connectivity of the mesh alone, and connectivity that is not a surface's makes L nearly dense. The
+// size is therefore counted before anything is allocated; Eigen itself counts in 32 bits and would write out of bounds.
 class SparseCholesky : private Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>, Eigen::Lower> {
  public:
   using Matrix = Eigen::SparseMatrix<double>;
 
-  // Orders and counts for the pattern of `matrix`. False when the factor is larger than `most`, in either.
-  bool Analyze(const Matrix& matrix, const FactorSize& most = {});
-  // Of a matrix of the same pattern. False when it is singular.
+  // Orders the pattern of `matrix` and counts the factor. Returns false when the factor exceeds `limit` in size or
+  // work.
+  bool Analyze(const Matrix& matrix, const FactorSize& limit = {});
+  // Factorizes a matrix of the pattern that was analyzed. Returns false when it is singular.
   bool Factorize(const Matrix& matrix);
 
   const FactorSize& size() const { return size_; }
   using Base::solve;
 
-  // X of A X = B, in place of B: faster than solve(), which reads the factor again for each column.
+  // Solves A X = B and stores X in place of B. It is faster than solve(), which reads the factor again for each column.
   void SolveInPlace(RowMatrix& columns) const;
 
  private:
   template <int kColumns>
   void SolveBlocks(RowMatrix& columns) const;
-  // False as soon as there is more than `most`.
-  bool Count(const CholMatrixType& ordered, const FactorSize& most);
+  // Returns false as soon as the count exceeds `limit`.
+  bool Count(const CholMatrixType& ordered, const FactorSize& limit);
 
   FactorSize size_;
 };

@@ -10,18 +10,18 @@
 namespace sac {
 
 // Measures the motion fields of a deformation at triangles: the nine channels of log-rotation and stretch, from the
-// polar decomposition J = U P of each deformation gradient (Wang et al. 2015, section 3.1). Keeps the last frame's
-// rotations, because a rotation vector is unwrapped in time: of the branches 2 pi apart the one nearest to the frame
-// before.
+// polar decomposition J = U P of each deformation gradient (Wang et al. 2015, section 3.1). The last frame's rotations
+// are kept, since a rotation vector is unwrapped in time: the branch nearest to the frame before is taken among those 2
+// pi apart.
 class TriangleFields {
  public:
   explicit TriangleFields(std::span<const Triangle> triangles);
 
-  // triangles x 9, of the deformation reference -> deformed. Rows of triangles that are degenerate in `reference` are
-  // zero, and so are their areas().
+  // Returns the fields of the deformation from `reference` to `deformed`, triangles x 9. Rows of triangles that are
+  // degenerate in `reference` are zero, and so are their areas().
   const Eigen::MatrixXd& Measure(const PositionMatrix& reference, const PositionMatrix& deformed);
 
-  // Per triangle, of the reference last measured.
+  // The area of each triangle in the reference last measured.
   const Eigen::VectorXd& areas() const { return areas_; }
 
  private:
@@ -30,7 +30,7 @@ class TriangleFields {
   Eigen::VectorXd areas_;
 };
 
-// The rotation U of the polar decomposition J = U P, for det J >= 0; the nearest rotation otherwise.
+// The rotation U of the polar decomposition J = U P where det J >= 0, and the rotation nearest to `j` otherwise.
 Eigen::Matrix3d PolarRotation(const Eigen::Matrix3d& j);
 
 // The rotation vector of `r` nearest to `previous` among the branches 2 pi apart.

@@ -19,7 +19,7 @@ struct EdgeGraph {
   struct Edge {
     std::uint32_t a, b;  // a < b
   };
-  // One way out of a vertex: along edge `edge` to the neighbour `vertex`.
+  // A step from a vertex along the edge `edge` to its neighbour `vertex`.
   struct Spoke {
     std::uint32_t vertex, edge;
   };
@@ -31,8 +31,8 @@ struct EdgeGraph {
   std::size_t vertices() const { return spoke_start.size() - 1; }
 };
 
-// Every index of `triangles` is below `vertices`. Memory is linear in the edges and in the three-cycles they form,
-// which in a surface are about the triangles.
+// Builds the graph of `triangles`, whose indices are all below `vertices`. Memory is linear in the edges and in the
+// three-cycles they form, which in a surface are about the triangles.
 EdgeGraph BuildEdgeGraph(const std::vector<Triangle>& triangles, std::size_t vertices);
 
 }  // namespace sac

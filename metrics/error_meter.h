@@ -9,7 +9,7 @@
 
 namespace sac {
 
-// How far a decoded animation is from its original.
+// The distortion of a decoded animation against its original.
 struct DistortionMetrics {
   double kg = 0;         // percent, see KgError; infinite only if the original has no spread: write null in JSON
   double sted = 0;       // sqrt(sted_s^2 + kStedWeight^2 sted_t^2), no unit
@@ -36,7 +36,7 @@ class ErrorMeter {
   // Takes the next frame, in display order. Both must have `vertices` positions, in the same vertex order.
   void Add(const Positions& original, const Positions& decoded);
 
-  // Of the frames so far; all zeros before the first.
+  // The metrics of the frames so far, all zeros before the first.
   DistortionMetrics Result() const;
 
  private:

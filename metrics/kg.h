@@ -9,8 +9,9 @@ namespace sac {
 //
 //   KG = 100 ||A - B||_F / ||A - E(A)||_F,
 //
-// A the original and B the decoded positions of all frames, E(A) the mean over the vertices of each frame and axis. A
-// percentage of the original's own spread: it does not depend on the unit or on where the model stands.
+// where A are the original and B the decoded positions of all frames, and E(A) is the mean over the vertices of each
+// frame and axis. KG is a percentage of the original's own spread, so that it depends neither on the unit nor on where
+// the model stands.
 class KgError {
  public:
   // Takes the next frame. Both have the same number of vertices.

@@ -9,7 +9,7 @@
 namespace sac {
 
 // The spatio-temporal edge difference of Vasa and Skala, "A perception correlated comparison method for dynamic
-// meshes", IEEE TVCG 17(2), 2011, with the constants its author's tool uses:
+// meshes", IEEE TVCG 17(2), 2011, with the constants that its author's tool uses:
 //
 //   STED = sqrt(STEDs^2 + kStedWeight^2 STEDt^2).
 inline constexpr double kStedWeight = 9.144e-5;
@@ -32,7 +32,7 @@ class SpatialSted {
   double Value() const;  // 0 without frames or vertices
 
  private:
-  // The weight, the weighted mean and the weighted sum of squares about that mean of r over some edges.
+  // The weight, the weighted mean and the weighted sum of squares about that mean of r over a set of edges.
   struct Moments {
     double weight, mean, squares;
   };
