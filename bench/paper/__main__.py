@@ -40,7 +40,7 @@ def main():
     )
     p.add_argument("--peers", help="directory of the programs sac-peer-NAME [that of sac's build]")
     p.add_argument("--output", default=os.path.join(ROOT, "docs/paper"), help="[docs/paper]")
-    p.add_argument("--work", default=os.path.join(ROOT, "build/paper"), help="keeps what was measured [build/paper]")
+    p.add_argument("--work", default=os.path.join(ROOT, "build/paper"), help="keeps what was measured and the pictures [build/paper]")
     p.add_argument(
         "--only", nargs="+", choices=[name for name, _, _ in PAGES], metavar="PAGE", help="some of: %(choices)s"
     )
@@ -50,12 +50,14 @@ def main():
         if not os.access(program, os.X_OK):
             p.error(f"{program} is not there, or no program")
     lab = Laboratory(args.data, args.sac, peers, args.work)
-    os.makedirs(args.output, exist_ok=True)
+    pictures = os.path.join(args.work, "pictures")
+    for directory in (args.output, pictures):
+        os.makedirs(directory, exist_ok=True)
     pages = []
     for name, title, body in PAGES:
         if args.only and name not in args.only:
             continue
-        page = Page(args.output, name, title)
+        page = Page(args.output, pictures, name, title)
         body(lab, page)
         if page.verdict:
             page.write()

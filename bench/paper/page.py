@@ -37,8 +37,8 @@ def g(value, digits=4):
 class Page:
     """A page of docs/paper: what the paper claims, whether it held, figures."""
 
-    def __init__(self, directory, name, title):
-        self.directory, self.name, self.title, self.verdict = directory, name, title, ""
+    def __init__(self, directory, pictures, name, title):
+        self.directory, self.pictures, self.name, self.title, self.verdict = directory, pictures, name, title, ""
         self.blocks = [f"# {title}"]
 
     def text(self, text):
@@ -67,10 +67,10 @@ class Page:
         self.blocks.append("\n".join("| " + " | ".join(line) + " |" for line in lines))
 
     def plot(self, draw, panels, caption, height=3.1):
-        """`draw(axes)` gets so many axes; writes NAME.svg, or NAME-2.svg for a page's second."""
-        file = self.name + ".svg"
-        if any(file in block for block in self.blocks):
-            file = f"{self.name}-{1 + sum('.svg)' in block for block in self.blocks)}.svg"
+        """`draw` gets `panels` axes. Draws the picture NAME.svg, NAME-2.svg the second one of a page, and names it in
+        the page: pictures are large as text and are not kept with the pages."""
+        before = sum(".svg`" in block for block in self.blocks)
+        file = f"{self.name}-{before + 1}.svg" if before else f"{self.name}.svg"
         figure, axes = plt.subplots(1, panels, figsize=(9, height), squeeze=False)
         draw(*axes[0])
         for axis in (axis for a in axes[0] for axis in (a.xaxis, a.yaxis) if axis.get_scale() == "log"):
@@ -79,9 +79,9 @@ class Page:
             axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             axis.set_minor_locator(NullLocator())
         figure.tight_layout()
-        figure.savefig(os.path.join(self.directory, file), metadata={"Date": None}, facecolor="white")
+        figure.savefig(os.path.join(self.pictures, file), metadata={"Date": None}, facecolor="white")
         plt.close(figure)
-        self.blocks.append(f"![{caption}]({file})")
+        self.blocks.append(f"Picture `{file}`: {caption}.")
 
     def write(self):
         with open(os.path.join(self.directory, self.name + ".md"), "w") as f:
