@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "codec/patches.h"
 #include "codec/position_coder.h"
 
 namespace sac {

@@ -1,15 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <span>
 #include <vector>
 
+#include "format/grid_position.h"
 #include "geometry/edges.h"
 
 namespace sac {
-
-using GridPosition = std::array<std::uint32_t, 3>;
 
 // Vertices of a component in an order in which each patch is a run, and the patches' sizes.
 struct PatchOrder {

@@ -5,9 +5,9 @@
 #include <span>
 #include <vector>
 
-#include "codec/patches.h"
 #include "codec/position_predictor.h"
 #include "format/bit_mixer.h"
+#include "format/grid_position.h"
 #include "format/integer_coder.h"
 #include "format/range_coder.h"
 #include "sac/status.h"

@@ -48,7 +48,7 @@ PositionGraph::PositionGraph(std::uint32_t vertices, std::span<const Triangle> t
   for (std::size_t v = 0; v < vertices; ++v) first_[v + 1] += first_[v];
 
   // An edge and what is across it; sorted, each edge's are together and in the order of neighbors_.
-  std::vector<std::array<std::uint32_t, 3>> across;
+  std::vector<Triangle> across;
   for (const Triangle& t : sets) {
     if (!kept(t[0]) || !kept(t[1]) || !kept(t[2])) continue;
     across.push_back({t[0], t[1], t[2]});

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <vector>
 
-#include "codec/patches.h"
 #include "codec/position_graph.h"
+#include "format/grid_position.h"
 
 namespace sac {
 

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kReach = 3;  // radius of a function in covering radii
 
-std::uint64_t SquaredDistance(const std::array<std::uint32_t, 3>& a, const std::array<std::uint32_t, 3>& b) {
+std::uint64_t SquaredDistance(const GridPosition& a, const GridPosition& b) {
   std::uint64_t sum = 0;
   for (std::size_t i = 0; i < 3; ++i) {
     const std::int64_t d = static_cast<std::int64_t>(a[i]) - b[i];
@@ -27,7 +27,7 @@ double Wendland(double t) {
 
 }  // namespace
 
-bool RadialFunctions(std::span<const std::array<std::uint32_t, 3>> grid, std::uint32_t samples, double most_values,
+bool RadialFunctions(std::span<const GridPosition> grid, std::uint32_t samples, double max_values,
                      Eigen::SparseMatrix<double>& functions) {
   functions.resize(0, 0);
   // Farthest-point sampling from the first vertex on; of equally far vertices the first.
@@ -54,7 +54,7 @@ bool RadialFunctions(std::span<const std::array<std::uint32_t, 3>> grid, std::ui
     for (std::size_t v = 0; v < grid.size(); ++v) {
       const double t = std::sqrt(static_cast<double>(SquaredDistance(grid[v], grid[chosen[i]]))) / radius;
       if (t >= 1) continue;
-      if (static_cast<double>(functions.data().size()) >= most_values) return false;
+      if (static_cast<double>(functions.data().size()) >= max_values) return false;
       const double value = Wendland(t);
       functions.insertBack(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(i)) = value;
       sum[static_cast<Eigen::Index>(v)] += value;

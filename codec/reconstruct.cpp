@@ -133,25 +133,25 @@ const PositionMatrix& Reconstructor::Add(Plane plane, const PlaneValues& values)
   return aligned_;
 }
 
-Eigen::Matrix3d Reconstructor::Rotation(const std::array<std::int32_t, 6>& rigid) const {
-  return RotationOf(Eigen::Vector3d(rigid[0], rigid[1], rigid[2]) * static_cast<double>(header_.rotation_step));
+Eigen::Matrix3d Reconstructor::Rotation(const RigidMotion& rigid) const {
+  const auto vector = rigid.rotation();
+  return RotationOf(Eigen::Vector3d(vector[0], vector[1], vector[2]) * static_cast<double>(header_.rotation_step));
 }
 
-Eigen::RowVector3d Reconstructor::Translation(const std::array<std::int32_t, 6>& rigid) const {
+Eigen::RowVector3d Reconstructor::Translation(const RigidMotion& rigid) const {
+  const auto vector = rigid.translation();
   return shape_.centre +
-         Eigen::RowVector3d(rigid[3], rigid[4], rigid[5]) * static_cast<double>(header_.translation_step);
+         Eigen::RowVector3d(vector[0], vector[1], vector[2]) * static_cast<double>(header_.translation_step);
 }
 
-PositionMatrix Reconstructor::ApplyRigid(const PositionMatrix& aligned,
-                                         const std::array<std::int32_t, 6>& rigid) const {
+PositionMatrix Reconstructor::ApplyRigid(const PositionMatrix& aligned, const RigidMotion& rigid) const {
   const Eigen::Matrix3d transposed = Rotation(rigid).transpose();  // positions are rows
   PositionMatrix moved = (aligned.rowwise() - shape_.centre) * transposed;
   moved.rowwise() += Translation(rigid);
   return moved;
 }
 
-PositionMatrix Reconstructor::ApplyRigidBetween(const std::array<std::int32_t, 6>& from,
-                                                const std::array<std::int32_t, 6>& to, double t) const {
+PositionMatrix Reconstructor::ApplyRigidBetween(const RigidMotion& from, const RigidMotion& to, double t) const {
   const Eigen::Quaterniond a(Rotation(from)), b(Rotation(to));
   const Eigen::Matrix3d transposed = a.slerp(t, b).toRotationMatrix().transpose();
   PositionMatrix moved = (aligned_.rowwise() - shape_.centre) * transposed;
@@ -159,8 +159,7 @@ PositionMatrix Reconstructor::ApplyRigidBetween(const std::array<std::int32_t, 6
   return moved;
 }
 
-PositionMatrix Reconstructor::RemoveRigid(const PositionMatrix& positions,
-                                          const std::array<std::int32_t, 6>& rigid) const {
+PositionMatrix Reconstructor::RemoveRigid(const PositionMatrix& positions, const RigidMotion& rigid) const {
   PositionMatrix aligned = (positions.rowwise() - Translation(rigid)) * Rotation(rigid);
   aligned.rowwise() += shape_.centre;
   return aligned;

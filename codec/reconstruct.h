@@ -7,6 +7,7 @@
 
 #include "codec/shape.h"
 #include "format/prediction.h"
+#include "format/rigid_motion.h"
 #include "format/sequence_header.h"
 #include "geometry/poisson_system.h"
 #include "sac/mesh.h"
@@ -58,14 +59,13 @@ class Reconstructor {
   // Adds another plane, in their order, to what there is of the frame.
   const PositionMatrix& Add(Plane plane, const PlaneValues& values);
   // The frame in model units: `aligned` after its rigid motion (spec.md 6.5.4).
-  PositionMatrix ApplyRigid(const PositionMatrix& aligned, const std::array<std::int32_t, 6>& rigid) const;
+  PositionMatrix ApplyRigid(const PositionMatrix& aligned, const RigidMotion& rigid) const;
   // Likewise of what there is of the frame, after a motion between two, `t` of 0 to 1. Of rotations it takes the
   // shorter way, whatever turns their vectors have in them: groups unwrap rotations each from its own begin.
   // Non-normative.
-  PositionMatrix ApplyRigidBetween(const std::array<std::int32_t, 6>& from, const std::array<std::int32_t, 6>& to,
-                                   double t) const;
+  PositionMatrix ApplyRigidBetween(const RigidMotion& from, const RigidMotion& to, double t) const;
   // The inverse, for encoders: positions as they were before the rigid motion.
-  PositionMatrix RemoveRigid(const PositionMatrix& positions, const std::array<std::int32_t, 6>& rigid) const;
+  PositionMatrix RemoveRigid(const PositionMatrix& positions, const RigidMotion& rigid) const;
 
   // All of the above: a frame's positions in model units.
   PositionMatrix Reconstruct(const FrameCoefficients& frame);
@@ -75,8 +75,8 @@ class Reconstructor {
 
  private:
   bool UseKeyReference();
-  Eigen::Matrix3d Rotation(const std::array<std::int32_t, 6>& rigid) const;
-  Eigen::RowVector3d Translation(const std::array<std::int32_t, 6>& rigid) const;
+  Eigen::Matrix3d Rotation(const RigidMotion& rigid) const;
+  Eigen::RowVector3d Translation(const RigidMotion& rigid) const;
 
   const Shape& shape_;
   SequenceHeader header_;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "codec/harmonics.h"
-#include "codec/patches.h"
+#include "format/grid_position.h"
 #include "format/plane_layout.h"
 #include "format/sequence_header.h"
 #include "geometry/components.h"

@@ -109,8 +109,7 @@ Clip Cuts() {
 }
 
 // Residuals that no encoder would choose: of any magnitude, predicted from anything.
-void FillAtRandom(std::mt19937& random, const std::vector<std::uint32_t>* references, std::uint32_t index,
-                  FrameSyntax& frame) {
+void FillAtRandom(std::mt19937& random, const References* references, std::uint32_t index, FrameSyntax& frame) {
   const auto residual = [&](std::uint32_t one_in, int most_bits) {
     std::int32_t value = 0;
     for (int bit = 0; bit < most_bits && random() % one_in == 0; ++bit) {
@@ -274,7 +273,7 @@ Bytes PerversePrevious() {
   std::mt19937 random(6);
   parts.groups.clear();
   parts.groups.push_back(CodeGroup(parts, 8, 1, [&](std::uint32_t i, FrameSyntax& frame) {
-    const std::vector<std::uint32_t> none;
+    const References none;
     FillAtRandom(random, i % 5 == 0 ? &none : &frame.slot.references, i, frame);
   }));
   parts.frames = 8;

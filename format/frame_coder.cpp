@@ -25,7 +25,7 @@ bool FrameCoder<Coder>::CodeReferences(Coder& coder, const FrameSlot& slot, Fram
   bool any = count > 0, two = count > 1;
   coder.Bit(reference_count_models_[0], any);
   if (any) coder.Bit(reference_count_models_[1], two);
-  if constexpr (Coder::kDecodes) frame.slot.references.assign(any ? (two ? 2 : 1) : 0, 0);
+  if constexpr (Coder::kDecodes) frame.slot.references.resize(any ? (two ? 2 : 1) : 0);
   for (std::uint32_t& reference : frame.slot.references) {
     std::uint32_t distance = index - 1 - reference;
     CodeUnsigned(coder, reference_models_, distance);
@@ -38,7 +38,7 @@ bool FrameCoder<Coder>::CodeReferences(Coder& coder, const FrameSlot& slot, Fram
 template <class Coder>
 std::span<const std::int32_t> FrameCoder<Coder>::ReferenceResiduals(const FrameSyntax& frame, std::size_t plane,
                                                                     std::size_t i) const {
-  const auto& references = frame.slot.references;
+  const References& references = frame.slot.references;
   return references.empty() ? zeros_[plane] : coded_[references[std::min(i, references.size() - 1)]].planes[plane];
 }
 
@@ -55,7 +55,7 @@ bool FrameCoder<Coder>::CodePlane(Coder& coder, BitModel& empty_model, std::size
     std::fill(values.begin(), values.end(), 0);
   } else {
     contexts.Start(frame.slot.level, LevelStep(header_, plane, frame.slot.level), plane,
-                   predictor_.References(frame.slot), ReferenceResiduals(frame, plane, 0),
+                   predictor_.FindReferences(frame.slot), ReferenceResiduals(frame, plane, 0),
                    ReferenceResiduals(frame, plane, 1));
     for (std::int32_t& value : values) {
       if (!planes_[plane].Code(coder, contexts.Next(), value)) return false;
@@ -68,14 +68,14 @@ bool FrameCoder<Coder>::CodePlane(Coder& coder, BitModel& empty_model, std::size
 }
 
 template <class Coder>
-bool FrameCoder<Coder>::CodeRigid(Coder& coder, LevelModels& models, std::array<std::int32_t, 6>& rigid) {
+bool FrameCoder<Coder>::CodeRigid(Coder& coder, LevelModels& models, RigidMotion& rigid) {
   bool moves = !Coder::kDecodes && std::any_of(rigid.begin(), rigid.end(), [](std::int32_t v) { return v != 0; });
   coder.Bit(models.moves, moves);
   if (!moves) {
     rigid = {};
     return true;
   }
-  for (std::size_t i = 0; i < 6; ++i) {
+  for (std::size_t i = 0; i < rigid.size(); ++i) {
     CodeSigned(coder, models.rigid[i / 3], rigid[i]);
     if (std::abs(static_cast<std::int64_t>(rigid[i])) > kMaxCoefficient) return false;
   }

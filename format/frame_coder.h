@@ -11,6 +11,7 @@
 #include "format/plane_models.h"
 #include "format/prediction.h"
 #include "format/range_coder.h"
+#include "format/rigid_motion.h"
 #include "format/sequence_header.h"
 
 namespace sac {
@@ -46,7 +47,7 @@ class FrameCoder {
   };
 
   bool CodeReferences(Coder& coder, const FrameSlot& slot, FrameSyntax& frame);
-  bool CodeRigid(Coder& coder, LevelModels& models, std::array<std::int32_t, 6>& rigid);
+  bool CodeRigid(Coder& coder, LevelModels& models, RigidMotion& rigid);
   // The residuals of `plane` of the first (i = 0) or second (i = 1) reference of `frame`. A single reference stands for
   // both.
   std::span<const std::int32_t> ReferenceResiduals(const FrameSyntax& frame, std::size_t plane, std::size_t i) const;

@@ -1,18 +1,18 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 
 #include "format/group_structure.h"
 #include "format/plane_layout.h"
+#include "format/rigid_motion.h"
 
 namespace sac {
 
 // The syntax elements of one frame (spec.md 6.2). They are integers in units of the header's steps.
 struct FrameSyntax {
-  FrameSlot slot;                          // references may differ from the structure's
-  std::array<std::int32_t, 6> rigid = {};  // residual of rotation (3), translation (3)
-  FramePlanes planes;                      // residuals
+  FrameSlot slot;      // references may differ from the structure's
+  RigidMotion rigid;   // residual of rotation (3), translation (3)
+  FramePlanes planes;  // residuals
 
   bool intra() const { return slot.references.empty(); }
 };

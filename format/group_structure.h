@@ -1,16 +1,17 @@
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <vector>
+
+#include "format/references.h"
 
 namespace sac {
 
 // The place of one frame of a group: where it is shown, and what it is predicted from unless it says otherwise.
 struct FrameSlot {
-  std::uint32_t display;                  // index in the group by time
-  std::uint32_t level;                    // of the pyramid: 0 for key and P-frames, one more with each halving
-  std::vector<std::uint32_t> references;  // 0, 1 or 2 earlier slots
+  std::uint32_t display;  // index in the group by time
+  std::uint32_t level;    // of the pyramid: 0 for key and P-frames, one more with each halving
+  References references;  // earlier slots
 };
 
 // The frames of a group in coding order (spec.md 6.1): the key frame, then pyramids of `pyramid` frames, of which the

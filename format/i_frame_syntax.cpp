@@ -72,7 +72,7 @@ const char* CodeSide(Coder& coder, const SequenceHeader& header, IFrameSyntax& s
   CodeFlag(coder, s.has_colors);
   const std::uint32_t grid = 1u << header.position_bits;
   SignedModels coordinate[3];
-  std::array<std::uint32_t, 3> last = {};
+  GridPosition last = {};
   if (!CodeList(coder, s.loose_vertices, header.vertices, [&](LooseVertex& v) {
         for (std::size_t a = 0; a < 3; ++a) {
           if (!CodeNear(coder, coordinate[a], last[a], grid, v.position[a])) return false;
@@ -94,7 +94,7 @@ const char* CodeSide(Coder& coder, const SequenceHeader& header, IFrameSyntax& s
   }
   SignedModels corner;
   std::uint32_t near = 0;
-  if (!CodeList(coder, s.loose_triangles, header.triangles, [&](std::array<std::uint32_t, 3>& t) {
+  if (!CodeList(coder, s.loose_triangles, header.triangles, [&](Triangle& t) {
         for (std::uint32_t& v : t) {
           if (!CodeNear(coder, corner, near, header.vertices, v)) return false;
           near = v;

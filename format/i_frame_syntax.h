@@ -5,8 +5,10 @@
 #include <span>
 #include <vector>
 
+#include "format/grid_position.h"
 #include "format/sequence_header.h"
 #include "sac/limits.h"
+#include "sac/mesh.h"
 #include "sac/status.h"
 
 namespace sac {
@@ -19,9 +21,9 @@ struct Weld {
 
 // A vertex that no triangle of the Draco mesh uses.
 struct LooseVertex {
-  std::array<std::uint32_t, 3> position;  // on the grid
-  std::array<float, 3> normal;            // when the mesh has normals
-  std::array<std::uint8_t, 4> color;      // when the mesh has colours
+  GridPosition position;              // on the grid
+  std::array<float, 3> normal;        // when the mesh has normals
+  std::array<std::uint8_t, 4> color;  // when the mesh has colours
 };
 
 // The syntax elements of an I-frame packet (spec.md 5): the mesh as Draco codes it, the parts that Draco cannot code,
@@ -36,10 +38,10 @@ struct IFrameSyntax {
   bool has_normals = false;
   bool has_colors = false;
   std::vector<LooseVertex> loose_vertices;
-  std::vector<std::array<std::uint32_t, 3>> loose_triangles;  // vertices of triangles that Draco drops
-  std::vector<std::uint32_t> harmonics;                       // per component, each at least 1
-  std::uint32_t samples_per_harmonic = 0;                     // 0: exact harmonics (spec.md 6.4)
-  std::array<float, 2> fingerprint = {};                      // of the harmonics (spec.md 6.6)
+  std::vector<Triangle> loose_triangles;   // vertices of triangles that Draco drops
+  std::vector<std::uint32_t> harmonics;    // per component, each at least 1
+  std::uint32_t samples_per_harmonic = 0;  // 0: exact harmonics (spec.md 6.4)
+  std::array<float, 2> fingerprint = {};   // of the harmonics (spec.md 6.6)
   std::vector<std::uint32_t> order;  // per vertex its index in the input; empty when the input's order is not kept
 };
 

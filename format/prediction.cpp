@@ -52,7 +52,7 @@ const FrameCoefficients* Predictor::FrameAt(std::int64_t display) const {
   return nullptr;
 }
 
-ReferenceFrames Predictor::References(const FrameSlot& slot) const {
+ReferenceFrames Predictor::FindReferences(const FrameSlot& slot) const {
   if (slot.references.empty()) return {};
   const std::uint32_t a = slot.references[0], b = slot.references.back();
   ReferenceFrames frames{&frames_[a], &frames_[b], nullptr, nullptr, slot.references.size() == 1};
@@ -64,7 +64,7 @@ ReferenceFrames Predictor::References(const FrameSlot& slot) const {
 
 FrameCoefficients Predictor::Predict(const FrameSlot& slot) const {
   if (slot.references.empty()) return {{}, zeros_};
-  const ReferenceFrames frames = References(slot);
+  const ReferenceFrames frames = FindReferences(slot);
   FrameCoefficients prediction{frames.first->rigid, zeros_};
   if (slot.references.size() == 2) Mean(prediction.rigid, frames.second->rigid);
   for (std::size_t p = 0; p < kPlanes; ++p) {

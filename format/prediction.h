@@ -1,12 +1,13 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <utility>
 #include <vector>
 
 #include "format/frame_syntax.h"
+#include "format/plane_layout.h"
+#include "format/rigid_motion.h"
 #include "format/sequence_header.h"
 
 namespace sac {
@@ -20,8 +21,8 @@ std::int32_t LevelStep(const SequenceHeader& header, std::size_t plane, std::uin
 
 // A frame's values: what prediction and residuals add up to.
 struct FrameCoefficients {
-  std::array<std::int32_t, 6> rigid = {};  // in the header's rotation and translation steps
-  FramePlanes planes;                      // in sixteenths of a step
+  RigidMotion rigid;   // in the header's rotation and translation steps
+  FramePlanes planes;  // in sixteenths of a step
 };
 
 // The frames that one is predicted from, none, one twice or two, and those as far beyond them in time, if they are
@@ -50,7 +51,7 @@ class Predictor {
 
   // From zero, one or two of the frames added, whose indices in coding order the slot has.
   FrameCoefficients Predict(const FrameSlot& slot) const;
-  ReferenceFrames References(const FrameSlot& slot) const;
+  ReferenceFrames FindReferences(const FrameSlot& slot) const;
   // Appends prediction plus residual, the next frame in coding order. False when a sum leaves the range of spec.md 6.3.
   bool Add(const FrameSyntax& frame);
 

@@ -312,7 +312,7 @@ TEST(Spec, SaysItsVersion) {
 }
 
 TEST(Spec, ReducedFunctions) {
-  std::vector<std::array<std::uint32_t, 3>> grid;
+  std::vector<GridPosition> grid;
   for (std::uint32_t v = 0; v < 10; ++v) grid.push_back({v * v, 0, 0});
   const auto wanted = Row<std::size_t>("reduced", "samples");
   Eigen::SparseMatrix<double> sparse;

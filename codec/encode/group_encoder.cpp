@@ -106,21 +106,20 @@ Eigen::MatrixXd GroupEncoder::MeasureMotion(const PositionMatrix& aligned) {
   return projection_.ProjectTriangles(fields_.Measure(reconstructor_.reference(), aligned));
 }
 
-std::vector<GroupEncoder::Rigid> GroupEncoder::ChooseRigid(const std::vector<PositionMatrix>& frames,
-                                                           const std::vector<FrameSlot>& structure) {
+std::vector<RigidMotion> GroupEncoder::ChooseRigid(const std::vector<PositionMatrix>& frames,
+                                                   const std::vector<FrameSlot>& structure) {
   std::vector<RigidTarget> targets;
   for (const PositionMatrix& positions : frames) targets.push_back(FitTarget(positions));
-  std::vector<Rigid> rigid(frames.size());
+  std::vector<RigidMotion> rigid(frames.size());
   for (const FrameSlot& slot : structure) {
     rigid[slot.display] = ChooseRigid(targets[slot.display], slot, structure, rigid);
   }
   return rigid;
 }
 
-GroupEncoder::Rigid GroupEncoder::ChooseRigid(const RigidTarget& target, const FrameSlot& slot,
-                                              const std::vector<FrameSlot>& structure,
-                                              const std::vector<Rigid>& rigid) {
-  Rigid chosen;
+RigidMotion GroupEncoder::ChooseRigid(const RigidTarget& target, const FrameSlot& slot,
+                                      const std::vector<FrameSlot>& structure, const std::vector<RigidMotion>& rigid) {
+  RigidMotion chosen;
   for (std::size_t i = 0; i < 6; ++i) {
     std::int64_t sum = 0;
     for (const std::uint32_t r : slot.references) sum += rigid[structure[r].display][i];
@@ -134,7 +133,7 @@ GroupEncoder::Rigid GroupEncoder::ChooseRigid(const RigidTarget& target, const F
 Status GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
                             std::vector<FrameSyntax>& coded) {
   // 1. By time, because rotations are unwrapped in time: rigid motions, then, against the one reference shape, fields.
-  const std::vector<Rigid> rigid = ChooseRigid(frames, structure);
+  const std::vector<RigidMotion> rigid = ChooseRigid(frames, structure);
   std::vector<Eigen::MatrixXd> motion_targets(frames.size());
   if (!reconstructor_.StartGroup()) return TooFar();
   if (UsesKeyReference()) {
@@ -163,7 +162,7 @@ Status GroupEncoder::EncodeNext(PositionMatrix positions, std::uint32_t index, F
   }
   Chain& chain = *chain_;
   const FrameSlot& slot = chain.structure.emplace_back(ChainSlot(index));
-  const Rigid rigid = ChooseRigid(FitTarget(positions), slot, chain.structure, chain.rigid);
+  const RigidMotion rigid = ChooseRigid(FitTarget(positions), slot, chain.structure, chain.rigid);
   chain.rigid.push_back(rigid);
   chain.frames.push_back(std::move(positions));
   Eigen::MatrixXd motion_target;
@@ -176,7 +175,7 @@ Status GroupEncoder::EncodeNext(PositionMatrix positions, std::uint32_t index, F
 }
 
 Status GroupEncoder::EncodeSlot(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
-                                const Rigid& rigid, Eigen::MatrixXd motion_target, Predictor& predictor,
+                                const RigidMotion& rigid, Eigen::MatrixXd motion_target, Predictor& predictor,
                                 FrameSyntax& frame) {
   // Predict, quantize, and ask the decoder's reconstruction what is left for the next plane.
   const FrameSlot& slot = structure[predictor.frames().size()];
@@ -233,8 +232,9 @@ void GroupEncoder::Quantize(Plane plane, const Eigen::MatrixXd& target, FrameCoe
   }
 }
 
-double GroupEncoder::ChooseMotion(const Rigid& rigid, const Eigen::MatrixXd& motion_target, const Predictor& predictor,
-                                  FrameSyntax& frame, FrameCoefficients& coefficients) const {
+double GroupEncoder::ChooseMotion(const RigidMotion& rigid, const Eigen::MatrixXd& motion_target,
+                                  const Predictor& predictor, FrameSyntax& frame,
+                                  FrameCoefficients& coefficients) const {
   coefficients = predictor.Predict(frame.slot);
   double bits = 0;
   for (std::size_t i = 0; i < 6; ++i) bits += EstimatedBits(rigid[i] - coefficients.rigid[i]);
@@ -242,7 +242,7 @@ double GroupEncoder::ChooseMotion(const Rigid& rigid, const Eigen::MatrixXd& mot
   return bits + EstimatedBits(frame.planes[kMotion]);
 }
 
-PositionMatrix GroupEncoder::ChooseReferences(const PositionMatrix& aligned, const Rigid& rigid,
+PositionMatrix GroupEncoder::ChooseReferences(const PositionMatrix& aligned, const RigidMotion& rigid,
                                               const Eigen::MatrixXd& motion_target, const Predictor& predictor,
                                               FrameSyntax& frame, FrameCoefficients& coefficients) {
   PositionMatrix left;
@@ -280,7 +280,7 @@ PositionMatrix GroupEncoder::ChooseReferences(const PositionMatrix& aligned, con
   return left;
 }
 
-Status GroupEncoder::ChoosePlanes(const PositionMatrix& positions, const Rigid& rigid,
+Status GroupEncoder::ChoosePlanes(const PositionMatrix& positions, const RigidMotion& rigid,
                                   const Eigen::MatrixXd& motion_target, const Predictor& predictor,
                                   FrameSyntax& frame) {
   const PositionMatrix aligned = reconstructor_.RemoveRigid(positions, rigid);

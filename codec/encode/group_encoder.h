@@ -11,6 +11,7 @@
 #include "codec/shape.h"
 #include "format/frame_syntax.h"
 #include "format/prediction.h"
+#include "format/rigid_motion.h"
 #include "format/sequence_header.h"
 #include "geometry/triangle_fields.h"
 #include "sac/status.h"
@@ -42,19 +43,19 @@ class GroupEncoder {
     std::array<double, 6> value;
     double slack;
   };
-  using Rigid = std::array<std::int32_t, 6>;
   RigidTarget FitTarget(const PositionMatrix& positions);
   // The rigid motion of each frame, by time, near enough to the best and easy to predict.
-  std::vector<Rigid> ChooseRigid(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure);
+  std::vector<RigidMotion> ChooseRigid(const std::vector<PositionMatrix>& frames,
+                                       const std::vector<FrameSlot>& structure);
   // The motion plane's coefficients of `aligned` against the present reference shape, in real numbers.
   Eigen::MatrixXd MeasureMotion(const PositionMatrix& aligned);
   // The rigid motion of one frame, given those by time that come before it in coding order.
-  static Rigid ChooseRigid(const RigidTarget& target, const FrameSlot& slot, const std::vector<FrameSlot>& structure,
-                           const std::vector<Rigid>& rigid);
+  static RigidMotion ChooseRigid(const RigidTarget& target, const FrameSlot& slot,
+                                 const std::vector<FrameSlot>& structure, const std::vector<RigidMotion>& rigid);
   // Chooses the syntax of the frame at the end of `predictor` and adds it there. `motion_target` is measured here
   // unless there is one reference shape.
   Status EncodeSlot(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
-                    const Rigid& rigid, Eigen::MatrixXd motion_target, Predictor& predictor, FrameSyntax& frame);
+                    const RigidMotion& rigid, Eigen::MatrixXd motion_target, Predictor& predictor, FrameSyntax& frame);
   // Makes `frame` repeat an earlier one exactly if its input does; false if it does not.
   bool RepeatFrame(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
                    const Predictor& predictor, FrameSyntax& frame) const;
@@ -62,15 +63,15 @@ class GroupEncoder {
   void Quantize(Plane plane, const Eigen::MatrixXd& target, FrameCoefficients& coefficients, FrameSyntax& frame) const;
   // From the references of `frame`: its motion plane, and about how many bits it costs with the rigid motion.
   // `coefficients`: the prediction, with the motion plane that results.
-  double ChooseMotion(const Rigid& rigid, const Eigen::MatrixXd& motion_target, const Predictor& predictor,
+  double ChooseMotion(const RigidMotion& rigid, const Eigen::MatrixXd& motion_target, const Predictor& predictor,
                       FrameSyntax& frame, FrameCoefficients& coefficients) const;
   // Chooses references other than the structure's where they are cheaper, then motion and displacement. What these
   // leave of `aligned`.
-  PositionMatrix ChooseReferences(const PositionMatrix& aligned, const Rigid& rigid,
+  PositionMatrix ChooseReferences(const PositionMatrix& aligned, const RigidMotion& rigid,
                                   const Eigen::MatrixXd& motion_target, const Predictor& predictor, FrameSyntax& frame,
                                   FrameCoefficients& coefficients);
   // Chooses references and the planes' residuals.
-  Status ChoosePlanes(const PositionMatrix& positions, const Rigid& rigid, const Eigen::MatrixXd& motion_target,
+  Status ChoosePlanes(const PositionMatrix& positions, const RigidMotion& rigid, const Eigen::MatrixXd& motion_target,
                       const Predictor& predictor, FrameSyntax& frame);
   // Whether exact + error, rounded to floats, is within the bound.
   Status CheckBound(const PositionMatrix& exact, const PositionMatrix& error) const;
@@ -87,7 +88,7 @@ class GroupEncoder {
   struct Chain {
     std::vector<PositionMatrix> frames;
     std::vector<FrameSlot> structure;
-    std::vector<Rigid> rigid;
+    std::vector<RigidMotion> rigid;
     Predictor predictor;
   };
   std::optional<Chain> chain_;

@@ -25,7 +25,7 @@ std::vector<References> LikelyReferences(std::uint32_t coded,
                                          const std::function<double(const References&)>& motion_bits, double most) {
   const auto score = [&](References references) {
     const double bits = motion_bits(references);
-    return Scored{bits, std::move(references)};
+    return Scored{bits, references};
   };
   std::vector<Scored> singles, pairs;
   for (std::uint32_t i = coded - std::min(coded, kFarthest); i < coded; ++i) singles.push_back(score({i}));
@@ -40,7 +40,7 @@ std::vector<References> LikelyReferences(std::uint32_t coded,
   std::vector<References> likely;
   for (auto* scored : {&singles, &pairs}) {
     for (Scored& s : *scored) {
-      if (s.bits <= most) likely.push_back(std::move(s.references));
+      if (s.bits <= most) likely.push_back(s.references);
     }
   }
   if (motion_bits({}) <= most) likely.emplace_back();

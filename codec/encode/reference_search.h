@@ -4,10 +4,9 @@
 #include <functional>
 #include <vector>
 
-namespace sac {
+#include "format/references.h"
 
-// Of a frame, in coding order: none, one or two.
-using References = std::vector<std::uint32_t>;
+namespace sac {
 
 // References that may serve a frame better than those of its group's structure: none, for a cut, and the likeliest
 // single frames and pairs of what is coded, for motion that comes again. `coded`: how many frames of the group there

@@ -8,7 +8,7 @@
 namespace sac {
 namespace {
 
-using Grid = std::vector<std::array<std::uint32_t, 3>>;
+using Grid = std::vector<GridPosition>;
 
 Grid RandomGrid(std::size_t n, std::uint32_t size, std::uint32_t seed) {
   std::mt19937 random(seed);

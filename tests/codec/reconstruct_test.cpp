@@ -53,7 +53,7 @@ TEST(Reconstruct, OfADisplacementMovesByIt) {
 TEST(Reconstruct, RemovesItsRigidMotion) {
   Fixture f;
   const Reconstructor reconstructor(f.shape, f.header);
-  const std::array<std::int32_t, 6> rigid = {30, -100, 70, 500, -20, 1};
+  const RigidMotion rigid = {30, -100, 70, 500, -20, 1};
   const PositionMatrix moved = reconstructor.ApplyRigid(f.shape.positions, rigid);
   EXPECT_GT((moved - f.shape.positions).cwiseAbs().maxCoeff(), 1);
   EXPECT_LT((reconstructor.RemoveRigid(moved, rigid) - f.shape.positions).cwiseAbs().maxCoeff(), 1e-14);

@@ -95,7 +95,7 @@ TEST(FrameSyntax, RandomFramesComeBack) {
     for (std::uint32_t f = 0; f < structure.size(); ++f) {
       frames.push_back(RandomFrame(structure[f], layouts, random));
       if (f > 0 && random() % 3 == 0) {  // references of its own
-        auto& references = frames.back().slot.references;
+        References& references = frames.back().slot.references;
         references.resize(random() % 3);
         for (std::uint32_t& r : references) r = static_cast<std::uint32_t>(random() % f);
       }
@@ -115,7 +115,7 @@ TEST(FrameSyntax, ExtremesComeBackAndNoMore) {
   const auto structure = GroupStructure(1, 1);
   for (const std::int32_t sign : {1, -1}) {
     FrameSyntax frame = Zero(structure[0], layouts);
-    frame.rigid.fill(sign * kMaxCoefficient);
+    frame.rigid.values.fill(sign * kMaxCoefficient);
     for (PlaneValues& plane : frame.planes) std::fill(plane.begin(), plane.end(), sign * kMaxResidual);
     const auto code = Write(structure, {frame}, layouts);
     ASSERT_TRUE(code);

@@ -8,8 +8,6 @@
 namespace sac {
 namespace {
 
-using References = std::vector<std::uint32_t>;
-
 TEST(GroupStructure, OfOneFrame) {
   const auto slots = GroupStructure(1, 16);
   ASSERT_EQ(slots.size(), 1u);

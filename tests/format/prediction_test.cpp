@@ -8,8 +8,6 @@
 namespace sac {
 namespace {
 
-using References = std::vector<std::uint32_t>;
-
 SequenceHeader Header(ReferenceShape reference_shape = ReferenceShape::kKey) {
   SequenceHeader header;
   header.vertices = 2;
@@ -25,7 +23,7 @@ FrameSyntax Frame(const References& references, std::int32_t residual, std::uint
                   std::uint32_t display = 0) {
   FrameSyntax frame;
   frame.slot = {display, level, references};
-  frame.rigid.fill(residual);
+  frame.rigid.values.fill(residual);
   frame.planes = EmptyPlanes(Layouts());
   for (PlaneValues& plane : frame.planes) plane.assign(plane.size(), residual);
   return frame;
