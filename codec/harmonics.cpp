@@ -160,37 +160,54 @@ bool ReducedHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen:
   return Refine(laplacian, mass, rows * mixed, out);
 }
 
-Status ComputeComponent(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,
-                        std::span<const std::array<std::uint32_t, 3>> grid, std::uint32_t count,
-                        std::uint32_t samples_per_harmonic, const Spare& spare, ComponentHarmonics& out) {
-  const Component& c = out.component;
-  const auto points = grid.subspan(c.first, c.count);
-  // spec.md 6.4.2: weights are stretched unevenly, which splits the multiple eigenvalues of symmetric shapes.
+// The Laplacian of a component; spec.md 6.4.2: weights are stretched unevenly, which splits the multiple eigenvalues of
+// symmetric shapes.
+Eigen::SparseMatrix<double> UnevenLaplacian(const LaplaceProblem& problem, const Component& c) {
   Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::max()), high = -low;
-  const auto point = [](const std::array<std::uint32_t, 3>& g) { return Eigen::Array3d(g[0], g[1], g[2]); };
-  for (const auto& g : points) {
+  const auto point = [](const GridPosition& g) { return Eigen::Array3d(g[0], g[1], g[2]); };
+  for (const GridPosition& g : problem.grid.subspan(c.first, c.count)) {
     low = low.min(point(g));
     high = high.max(point(g));
   }
   const double extent = std::max(1.0, (high - low).maxCoeff());
-  const EdgeRange range = EdgesOf(edges, c.first, c.count);
-  const auto ends = std::span(edges.ends).subspan(range.begin, range.count);
+  const EdgeRange range = EdgesOf(problem.edges, c.first, c.count);
+  const auto ends = std::span(problem.edges.ends).subspan(range.begin, range.count);
   std::vector<double> uneven(ends.size());
   for (std::size_t e = 0; e < ends.size(); ++e) {
-    const Eigen::Array3d middle = (point(grid[ends[e][0]]) + point(grid[ends[e][1]])) / 2;
-    uneven[e] = weights[range.begin + e] * (1 + kInhomogeneity * GenericCubic((middle - low) / extent));
+    const Eigen::Array3d middle = (point(problem.grid[ends[e][0]]) + point(problem.grid[ends[e][1]])) / 2;
+    uneven[e] = problem.weights[range.begin + e] * (1 + kInhomogeneity * GenericCubic((middle - low) / extent));
   }
-  const Eigen::SparseMatrix<double> laplacian = LaplacianMatrix(ends, uneven, c.first, c.count);
-  const Eigen::VectorXd mass = masses.segment(c.first, c.count);
+  return LaplacianMatrix(ends, uneven, c.first, c.count);
+}
 
-  const std::uint64_t samples = static_cast<std::uint64_t>(samples_per_harmonic) * count;
+// Scales each harmonic to a mean square of 1 and gives it the sign of spec.md 6.4.3; the constant one is known exactly.
+void Normalize(const Eigen::VectorXd& mass, ComponentHarmonics& harmonics) {
+  harmonics.eigenvalues[0] = 0;
+  harmonics.vectors.col(0).setOnes();
+  for (Eigen::Index k = 0; k < harmonics.vectors.cols(); ++k) {
+    auto h = harmonics.vectors.col(k);
+    double sign = 0;
+    for (Eigen::Index v = 0; v < h.rows(); ++v) sign += Generic(static_cast<std::uint32_t>(v)) * h[v];
+    const double mean_square = h.cwiseAbs2().dot(mass) / mass.sum();
+    h *= (k > 0 && sign < 0 ? -1.0 : 1.0) / std::sqrt(mean_square);
+  }
+}
+
+Status ComputeComponent(const LaplaceProblem& problem, std::uint32_t count, const Spare& spare,
+                        ComponentHarmonics& out) {
+  const Component& c = out.component;
+  const Eigen::SparseMatrix<double> laplacian = UnevenLaplacian(problem, c);
+  const Eigen::VectorXd mass = problem.masses.segment(c.first, c.count);
+
+  const std::uint64_t samples = static_cast<std::uint64_t>(problem.samples_per_harmonic) * count;
   Eigen::SparseMatrix<double> functions;
   if (count > 1 && samples > 0 && samples < c.count) {
     // A vertex that k functions reach is in k^2 of their products.
-    const double most =
+    const double max_values =
         std::min((kFunctionsMemory * c.count + spare.memory) / kFunctionMemory,
                  std::sqrt((HarmonicsWork(c.count, count, static_cast<double>(samples)) + spare.work) * c.count));
-    if (!RadialFunctions(points, static_cast<std::uint32_t>(samples), most, functions)) {
+    if (!RadialFunctions(problem.grid.subspan(c.first, c.count), static_cast<std::uint32_t>(samples), max_values,
+                         functions)) {
       return Status::Limit("the harmonic basis takes more work or memory than the limit");
     }
   }
@@ -203,16 +220,7 @@ Status ComputeComponent(const EdgeList& edges, std::span<const double> weights, 
   }
   out.eigenvalues = pairs.values.cwiseMax(0);
   out.vectors = std::move(pairs.vectors);
-  // The constant function is known exactly.
-  out.eigenvalues[0] = 0;
-  out.vectors.col(0).setOnes();
-  for (std::uint32_t k = 0; k < count; ++k) {
-    auto h = out.vectors.col(k);
-    double sign = 0;
-    for (std::uint32_t v = 0; v < c.count; ++v) sign += Generic(v) * h[v];
-    const double mean_square = h.cwiseAbs2().dot(mass) / mass.sum();
-    h *= (k > 0 && sign < 0 ? -1.0 : 1.0) / std::sqrt(mean_square);
-  }
+  Normalize(mass, out);
   return Status::Ok();
 }
 
@@ -278,16 +286,13 @@ double HarmonicsMemory(double vertices, double harmonics, double samples) {
   return problem.reduced ? 4 * kept + kFunctionsMemory * vertices + vectors + 6 * kValue * n * n : 2 * kept + vectors;
 }
 
-Status ComputeHarmonics(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,
-                        std::span<const std::array<std::uint32_t, 3>> grid, std::span<const Component> components,
-                        std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic, const Spare& spare,
-                        HarmonicBasis& basis) {
+Status ComputeHarmonics(const LaplaceProblem& problem, const Spare& spare, HarmonicBasis& basis) {
   basis.components.clear();
-  basis.order = HarmonicOrder(counts);
-  for (std::size_t i = 0; i < components.size(); ++i) {
+  basis.order = HarmonicOrder(problem.counts);
+  for (std::size_t i = 0; i < problem.components.size(); ++i) {
     ComponentHarmonics& c = basis.components.emplace_back();
-    c.component = components[i];
-    const Status status = ComputeComponent(edges, weights, masses, grid, counts[i], samples_per_harmonic, spare, c);
+    c.component = problem.components[i];
+    const Status status = ComputeComponent(problem, problem.counts[i], spare, c);
     if (!status.ok()) return {status.code(), "component " + std::to_string(i) + ": " + status.message()};
   }
   return Status::Ok();

@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "format/grid_position.h"
 #include "format/harmonic_order.h"
 #include "geometry/components.h"
 #include "geometry/laplacian.h"
@@ -47,12 +48,20 @@ struct Spare {
   double memory = std::numeric_limits<double>::infinity();
 };
 
-// Computes the basis as spec.md 6.4 defines it. `grid` holds the vertices' integer positions, `masses` and `weights`
-// are of the decoded first frame; the components may also be patches. kCorrupt when an eigenvalue problem does not
-// converge, kLimit when there is not enough to spare.
-Status ComputeHarmonics(const EdgeList& edges, std::span<const double> weights, const Eigen::VectorXd& masses,
-                        std::span<const std::array<std::uint32_t, 3>> grid, std::span<const Component> components,
-                        std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic, const Spare& spare,
-                        HarmonicBasis& basis);
+// The eigenvalue problem of the Laplace-Beltrami operator of a mesh, which is solved for each of its components, or for
+// each patch, apart. What it refers to must outlive it.
+struct LaplaceProblem {
+  const EdgeList& edges;
+  std::span<const double> weights;         // cotangent weight per edge, of the decoded first frame
+  const Eigen::VectorXd& masses;           // area share per vertex, of the decoded first frame
+  std::span<const GridPosition> grid;      // per vertex
+  std::span<const Component> components;   // or patches
+  std::span<const std::uint32_t> counts;   // harmonics wanted per component, 1 to its number of vertices
+  std::uint32_t samples_per_harmonic = 0;  // of the reduced basis; 0: the exact one
+};
+
+// Computes the basis as spec.md 6.4 defines it. kCorrupt when an eigenvalue problem does not converge, kLimit when it
+// takes more than `spare` has.
+Status ComputeHarmonics(const LaplaceProblem& problem, const Spare& spare, HarmonicBasis& basis);
 
 }  // namespace sac

@@ -118,12 +118,13 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
   if (header.detail_step > 0) {
     // Every vertex alike: a plain orthogonal basis of each patch.
     const Eigen::VectorXd alike = Eigen::VectorXd::Ones(shape.positions.rows());
-    SAC_RETURN_IF_ERROR(ComputeHarmonics(shape.edges, shape.weights, alike, mesh.grid, mesh.patches, patch_sizes, 0, {},
+    SAC_RETURN_IF_ERROR(ComputeHarmonics({shape.edges, shape.weights, alike, mesh.grid, mesh.patches, patch_sizes}, {},
                                          shape.patch_basis));
   }
+  const Spare spare{limits.basis_work - shape.work, static_cast<double>(limits.memory - shape.memory)};
   return ComputeHarmonics(
-      shape.edges, shape.weights, shape.masses, mesh.grid, shape.components, counts, samples_per_harmonic,
-      {limits.basis_work - shape.work, static_cast<double>(limits.memory - shape.memory)}, shape.basis);
+      {shape.edges, shape.weights, shape.masses, mesh.grid, shape.components, counts, samples_per_harmonic}, spare,
+      shape.basis);
 }
 
 }  // namespace sac

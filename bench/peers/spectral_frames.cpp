@@ -37,12 +37,12 @@ Status SpectralBasis::Build(std::vector<Triangle> triangles, const PositionMatri
     counts.push_back(std::min(c.count, std::max(1u, static_cast<std::uint32_t>(share))));
   }
   // The exact harmonics need no grid but for its size.
-  const std::vector<std::array<std::uint32_t, 3>> grid(n);
+  const std::vector<GridPosition> grid(n);
   const EdgeList edges = BuildEdges(triangles_);
   HarmonicBasis harmonics;
-  SAC_RETURN_IF_ERROR(ComputeHarmonics(edges, CotangentWeights(first_frame, triangles_, edges),
-                                       VertexMasses(first_frame, triangles_), grid, components_, counts, 0, {},
-                                       harmonics));
+  const std::vector<double> weights = CotangentWeights(first_frame, triangles_, edges);
+  const Eigen::VectorXd masses = VertexMasses(first_frame, triangles_);
+  SAC_RETURN_IF_ERROR(ComputeHarmonics({edges, weights, masses, grid, components_, counts}, {}, harmonics));
   const auto columns = static_cast<Eigen::Index>(std::accumulate(counts.begin(), counts.end(), 0u));
   Eigen::MatrixXd at_vertices = Eigen::MatrixXd::Zero(n, columns);
   Eigen::Index column = 0;
