@@ -23,7 +23,7 @@ constexpr int kSpareVectors = 20;          // of Lanczos, beside two for each wa
 constexpr double kFunctionsMemory = 1000;  // a vertex, of the radial functions that reach it on a surface
 constexpr double kFunctionMemory = 90;     // of each of them
 // Surfaces take 1 or 2 restarts; what is next to a long path, whose eigenvalues are all but equal, takes hundreds.
-constexpr int kUsualRestarts = 5, kMostRestarts = 60;
+constexpr int kUsualRestarts = 5, kMaxRestarts = 60;
 
 // A fixed generic cubic of the coordinates scaled to [0, 1], within [-1, 1] (spec.md 6.4.2).
 double GenericCubic(const Eigen::Array3d& p) {
@@ -93,7 +93,7 @@ bool SmallestEigenpairs(const Matrix& lower, std::uint32_t count, EigenPairs& ou
   for (Eigen::Index i = 0; i < n; ++i) start[i] = Generic(static_cast<std::uint32_t>(i));
   solver.init(start.data());
   try {
-    solver.compute(Spectra::SortRule::LargestMagn, kMostRestarts, 1e-13, Spectra::SortRule::SmallestAlge);
+    solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, 1e-13, Spectra::SortRule::SmallestAlge);
   } catch (const std::runtime_error&) {  // of its small eigenproblems
     return false;
   }

@@ -8,8 +8,8 @@
 namespace sac {
 namespace {
 
-constexpr std::uint32_t kMostNeighbors = 32;
-constexpr std::size_t kMostCounted = 8;
+constexpr std::uint32_t kMaxNeighbors = 32;
+constexpr std::size_t kMaxCounted = 8;
 
 template <class T>
 void SortUnique(std::vector<T>& list) {
@@ -37,7 +37,7 @@ PositionGraph::PositionGraph(std::uint32_t vertices, std::span<const Triangle> t
   SortUnique(sets);
   std::vector<std::uint32_t> valence(vertices, 0);
   for (const Edge& e : edges) ++valence[e[0]];
-  const auto kept = [&](std::uint32_t v) { return valence[v] <= kMostNeighbors; };
+  const auto kept = [&](std::uint32_t v) { return valence[v] <= kMaxNeighbors; };
 
   first_.assign(vertices + std::size_t{1}, 0);
   for (const Edge& e : edges) {
@@ -80,11 +80,11 @@ std::vector<std::uint32_t> PositionGraph::CodingOrder() const {
   std::vector<std::uint32_t> order, count(vertices(), 0);
   std::vector<bool> taken(vertices(), false);
   // Queues by the number of neighbours taken, and how far each is read. What has moved on to another is skipped.
-  std::array<std::vector<std::uint32_t>, kMostCounted + 1> queues;
-  std::array<std::size_t, kMostCounted + 1> read = {};
+  std::array<std::vector<std::uint32_t>, kMaxCounted + 1> queues;
+  std::array<std::size_t, kMaxCounted + 1> read = {};
   std::uint32_t lowest = 0;
   const auto next = [&] {
-    for (std::size_t k = kMostCounted; k > 0; --k) {
+    for (std::size_t k = kMaxCounted; k > 0; --k) {
       while (read[k] < queues[k].size()) {
         const std::uint32_t v = queues[k][read[k]++];
         if (!taken[v] && count[v] == k) return v;
@@ -98,7 +98,7 @@ std::vector<std::uint32_t> PositionGraph::CodingOrder() const {
     taken[v] = true;
     order.push_back(v);
     for (const std::uint32_t w : Neighbors(v)) {
-      if (taken[w] || count[w] == kMostCounted) continue;
+      if (taken[w] || count[w] == kMaxCounted) continue;
       queues[++count[w]].push_back(w);
     }
   }

@@ -9,7 +9,7 @@ namespace {
 
 using Vector = PositionPredictor::Vector;
 
-constexpr std::size_t kMostParallelograms = 16;
+constexpr std::size_t kMaxParallelograms = 16;
 constexpr int kSweeps = 8;
 constexpr std::int64_t kMembrane = 39322;                 // 0.3 * 2 in 1/65536
 constexpr std::int64_t kFlat = 307;                       // 0.3 in 1/1024
@@ -61,7 +61,7 @@ PositionPredictor::PositionPredictor(const PositionGraph& graph, const PositionS
 
 // spec.md 5.5.3: across each edge whose triangle has the vertex lies another, known one.
 void PositionPredictor::AddParallelograms() {
-  std::array<Vector, kMostParallelograms> corners;
+  std::array<Vector, kMaxParallelograms> corners;
   std::size_t count = 0;
   Vector sum = {};
   normal_ = {};
@@ -71,7 +71,7 @@ void PositionPredictor::AddParallelograms() {
       const auto across = graph_.Across(a, b);
       if (!std::binary_search(across.begin(), across.end(), now_.vertex)) continue;
       for (const std::uint32_t c : across) {
-        if (c == now_.vertex || !known_[c] || count == kMostParallelograms) continue;
+        if (c == now_.vertex || !known_[c] || count == kMaxParallelograms) continue;
         corners[count] = positions_[a] + positions_[b] - positions_[c];
         sum = sum + corners[count++];
         const Vector u = positions_[a] - positions_[c], w = positions_[b] - positions_[c];
@@ -116,7 +116,7 @@ void PositionPredictor::AverageNeighbors() {
   if (wide > 0) length_ = lengths / wide;
 }
 
-// The vertex and the unknown ones up to two edges away, in the order they are found, at most kMostGuesses.
+// The vertex and the unknown ones up to two edges away, in the order they are found, at most kMaxGuesses.
 void PositionPredictor::GatherUnknown() {
   unknown_.clear();
   const auto add = [&](std::uint32_t v) {
@@ -128,7 +128,7 @@ void PositionPredictor::GatherUnknown() {
   for (int ring = 0; ring < 2; ++ring) {
     for (const std::size_t end = unknown_.size(); at < end; ++at) {
       for (const std::uint32_t w : graph_.Neighbors(unknown_[at])) {
-        if (!Given(w) && unknown_.size() < kMostGuesses) add(w);
+        if (!Given(w) && unknown_.size() < kMaxGuesses) add(w);
       }
     }
   }
@@ -170,8 +170,8 @@ PositionPredictor::Equation PositionPredictor::EquationOf(std::uint32_t u) const
 // spec.md 5.5.4: the vertex, and unknown ones around it, where they bend the surface least.
 PositionPredictor::Vector PositionPredictor::Relax() {
   GatherUnknown();
-  std::array<Equation, kMostGuesses> equations;
-  std::array<Vector, kMostGuesses> guesses;
+  std::array<Equation, kMaxGuesses> equations;
+  std::array<Vector, kMaxGuesses> guesses;
   for (std::size_t i = 0; i < unknown_.size(); ++i) {
     equations[i] = EquationOf(unknown_[i]);
     Vector sum = {};

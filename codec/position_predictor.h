@@ -49,10 +49,10 @@ class PositionPredictor {
   void Learn(const GridPosition& position);
 
  private:
-  static constexpr std::size_t kMostGuesses = 24;
+  static constexpr std::size_t kMaxGuesses = 24;
   struct Equation {
     Vector constant = {};
-    std::array<std::int64_t, kMostGuesses> factors = {};
+    std::array<std::int64_t, kMaxGuesses> factors = {};
     std::int64_t denominator = 0;
   };
   // Where a vertex stands among the unknown ones of a prediction.

@@ -9,8 +9,8 @@
 namespace sac {
 namespace {
 
-// What is left of a sum when so much less is to be added up is mostly its rounding errors.
-constexpr double kLeft = 1.0 / (1 << 16);
+// A sum that shrinks below this share of the largest one since it began anew holds mostly rounding errors.
+constexpr double kRoundingShare = 1.0 / (1 << 16);
 
 constexpr std::array kHarmonicPlanes = {kMotion, kDisplacement, kDetail};
 
@@ -60,7 +60,7 @@ const Eigen::MatrixXd& PlaneField::Update(const PlaneValues& coefficients) {
   const Eigen::Map<const Eigen::Matrix<std::int32_t, -1, -1, Eigen::RowMajor>> rows(coefficients.data(), units_.size(),
                                                                                     values_.cols());
   const double size = units_.dot(rows.cast<double>().cwiseAbs().rowwise().sum());
-  if (size < kLeft * largest_) Reset();
+  if (size < kRoundingShare * largest_) Reset();
   largest_ = std::max(largest_, size);
   std::size_t i = 0;
   Eigen::Index row = 0;

@@ -48,16 +48,16 @@ Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> c
 // before another.
 Status CheckSystems(const SequenceHeader& header, const Limits& limits, Shape& shape) {
   const auto vertices = static_cast<std::uint32_t>(shape.vertices());
-  const FactorSize most{std::min(limits.factor_values, (limits.memory - shape.memory) / (2 * kFactorMemory)),
-                        (limits.basis_work - shape.work) / 3};
+  const FactorSize max_size{std::min(limits.factor_values, (limits.memory - shape.memory) / (2 * kFactorMemory)),
+                            (limits.basis_work - shape.work) / 3};
   SparseCholesky probe;
-  if (!probe.Analyze(LaplacianMatrix(shape.edges.ends, shape.weights, 0, vertices), most)) {
+  if (!probe.Analyze(LaplacianMatrix(shape.edges.ends, shape.weights, 0, vertices), max_size)) {
     return Status::Limit("the mesh is too entangled: its linear system takes more work or memory than the limit");
   }
   shape.work += 3 * probe.size().work;
   shape.memory += 2 * kFactorMemory * probe.size().values;
   shape.reconstructor_memory = kFactorMemory * probe.size().values + kFieldMemory * vertices;
-  if (MostGroupValues(limits, shape) < FrameValues(shape.layouts))
+  if (MaxGroupValues(limits, shape) < FrameValues(shape.layouts))
     return Status::Limit("a frame takes more memory than the limit");
   double frame = 6.0 * static_cast<double>(probe.size().values);
   for (const PlaneLayout& layout : {shape.layouts[kMotion], shape.layouts[kDisplacement]}) {
@@ -77,14 +77,14 @@ Limits LimitsOfIFrame(const Limits& limits, std::size_t i_frame_bytes) {
   return narrowed;
 }
 
-std::uint64_t MostGroupValues(const Limits& limits, const Shape& shape) {
+std::uint64_t MaxGroupValues(const Limits& limits, const Shape& shape) {
   return std::min(limits.group_values, (limits.memory - std::min(limits.memory, shape.memory)) / kCoefficientMemory);
 }
 
 unsigned UseThreads(unsigned threads, const Limits& limits, Shape& shape) {
-  const std::uint64_t left = limits.memory - std::min(limits.memory, shape.memory);
+  const std::uint64_t spare = limits.memory - std::min(limits.memory, shape.memory);
   const std::uint64_t more =
-      std::min<std::uint64_t>(threads - 1, left / 2 / std::max<std::uint64_t>(1, shape.reconstructor_memory));
+      std::min<std::uint64_t>(threads - 1, spare / 2 / std::max<std::uint64_t>(1, shape.reconstructor_memory));
   shape.memory += more * shape.reconstructor_memory;
   return static_cast<unsigned>(1 + more);
 }

@@ -48,7 +48,7 @@ struct Shape {
 Limits LimitsOfIFrame(const Limits& limits, std::size_t i_frame_bytes);
 
 // How many values of planes a group may have, with what the shape leaves of the memory.
-std::uint64_t MostGroupValues(const Limits& limits, const Shape& shape);
+std::uint64_t MaxGroupValues(const Limits& limits, const Shape& shape);
 
 // How many of so many threads may have a Reconstructor each: all of them take no more than half of what the shape
 // leaves of the memory, and that off it.

@@ -22,19 +22,19 @@ class AdaptiveBit {
     } else {
       probability_ = static_cast<std::uint16_t>(probability_ - ((probability_ * kRates[count_]) >> 16));
     }
-    if (count_ < kMostSeen) ++count_;
+    if (count_ < kMaxSeen) ++count_;
   }
 
  private:
-  static constexpr std::size_t kMostSeen = 60;
-  static constexpr std::array<std::uint32_t, kMostSeen + 1> kConfidence = [] {
-    std::array<std::uint32_t, kMostSeen + 1> values{};
-    for (std::uint32_t n = 0; n <= kMostSeen; ++n) values[n] = 512 * n / (2 * n + 3);
+  static constexpr std::size_t kMaxSeen = 60;
+  static constexpr std::array<std::uint32_t, kMaxSeen + 1> kConfidence = [] {
+    std::array<std::uint32_t, kMaxSeen + 1> values{};
+    for (std::uint32_t n = 0; n <= kMaxSeen; ++n) values[n] = 512 * n / (2 * n + 3);
     return values;
   }();
-  static constexpr std::array<std::uint32_t, kMostSeen + 1> kRates = [] {
-    std::array<std::uint32_t, kMostSeen + 1> values{};
-    for (std::uint32_t n = 0; n <= kMostSeen; ++n) values[n] = 655360 / (10 * n + 16);
+  static constexpr std::array<std::uint32_t, kMaxSeen + 1> kRates = [] {
+    std::array<std::uint32_t, kMaxSeen + 1> values{};
+    for (std::uint32_t n = 0; n <= kMaxSeen; ++n) values[n] = 655360 / (10 * n + 16);
     return values;
   }();
 

@@ -12,24 +12,24 @@ namespace {
 constexpr std::size_t kTagBytes = 5;  // at most
 constexpr std::uint64_t kTrimAfter = 1 << 16;
 // Larger packets are not looked for: any byte may claim one, and would make us hold what follows.
-constexpr std::uint32_t kMostPayload = 1 << 24;
+constexpr std::uint32_t kMaxPayload = 1 << 24;
 constexpr std::uint64_t kMemoryOfByte = 50;  // that is held: itself, and a candidate that begins there
 
 }  // namespace
 
 PacketSearch::PacketSearch(const Limits& limits)
-    : most_payload_(static_cast<std::uint32_t>(
-          std::min<std::uint64_t>({limits.packet_bytes, kMostPayload, limits.memory / kMemoryOfByte}))) {}
+    : max_payload_(static_cast<std::uint32_t>(
+          std::min<std::uint64_t>({limits.packet_bytes, kMaxPayload, limits.memory / kMemoryOfByte}))) {}
 
 bool PacketSearch::TakeStart(const Start& start) {
   const std::span<const std::uint8_t> rest = std::span(held_).subspan(start.begin - held_from_);
-  const std::size_t most = std::min(rest.size(), kTagBytes);
+  const std::size_t tag_bytes = std::min(rest.size(), kTagBytes);
   std::size_t size = 0;
-  while (size < most && (rest[size] & 0x80) != 0) ++size;
-  if (size == most) return most == kTagBytes;  // five bytes that go on are no tag
+  while (size < tag_bytes && (rest[size] & 0x80) != 0) ++size;
+  if (size == tag_bytes) return tag_bytes == kTagBytes;  // five bytes that go on are no tag
   ByteReader reader(rest.first(size + 1));
   const std::uint32_t tag = reader.Varint(), payload = tag / 4;
-  const bool fits = reader.ok() && payload > 0 && payload <= most_payload_;
+  const bool fits = reader.ok() && payload > 0 && payload <= max_payload_;
   if (fits && static_cast<PacketType>(tag & 3) != PacketType::kIFrame) {
     candidates_.push({start.begin, start.begin + PacketSize(payload), start.crc_before});
   }
@@ -61,7 +61,7 @@ void PacketSearch::Read(std::span<const std::uint8_t>& bytes, std::optional<Pack
 void PacketSearch::Trim() {
   std::uint64_t first = starts_.empty() ? position_ : starts_.front().begin;
   // The queue is a heap by ends; what it holds begins no earlier than a packet's size ago.
-  const std::uint64_t longest = PacketSize(most_payload_);
+  const std::uint64_t longest = PacketSize(max_payload_);
   if (!candidates_.empty()) first = std::min(first, position_ > longest ? position_ - longest : 0);
   if (first <= held_from_) return;
   held_.erase(held_.begin(), held_.begin() + static_cast<std::ptrdiff_t>(first - held_from_));

@@ -20,8 +20,8 @@ class PacketSearch {
   explicit PacketSearch(const Limits& limits);
 
   // Takes bytes from the front of `bytes` until a packet is complete, which ends the search, or until `bytes` is empty.
-  // The search holds as many bytes as the largest packet it looks for, at most 16 MB, and up to 50 bytes of memory for
-  // each of them. It does not find larger packets.
+  // The search holds as many bytes as the largest packet it looks for, at tag_bytes 16 MB, and up to 50 bytes of memory
+  // for each of them. It does not find larger packets.
   void Read(std::span<const std::uint8_t>& bytes, std::optional<Packet>& packet);
 
  private:
@@ -40,11 +40,11 @@ class PacketSearch {
   // Drops bytes that no candidate needs.
   void Trim();
 
-  std::uint32_t most_payload_;
+  std::uint32_t max_payload_;
   std::vector<std::uint8_t> held_;
   std::uint64_t held_from_ = 0, position_ = 0;
   std::uint32_t crc_ = 0;      // of all bytes of this search
-  std::vector<Start> starts_;  // whose tags are not whole yet, at most 5
+  std::vector<Start> starts_;  // whose tags are not whole yet, at tag_bytes 5
   std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates_;
 };
 

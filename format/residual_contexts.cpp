@@ -16,8 +16,8 @@ std::uint32_t Magnitude(std::int32_t residual) {
 
 int Sign(std::int64_t value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
-std::uint8_t Class(std::uint32_t value, std::uint32_t most) {
-  return static_cast<std::uint8_t>(std::min(HalfOctave(value), most));
+std::uint8_t Class(std::uint32_t value, std::uint32_t max_class) {
+  return static_cast<std::uint8_t>(std::min(HalfOctave(value), max_class));
 }
 
 }  // namespace

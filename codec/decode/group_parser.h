@@ -36,7 +36,7 @@ class GroupParser {
       : header_(header),
         layouts_(shape.layouts),
         frames_per_group_(limits.frames_per_group),
-        group_values_(MostGroupValues(limits, shape)) {}
+        group_values_(MaxGroupValues(limits, shape)) {}
 
   // A group. Of one whose code is `cut` off, the frames whose bytes are all there, the others not whole. kCorrupt, with
   // the frame's number, or when no frame is whole; kLimit.

@@ -9,7 +9,7 @@ namespace {
 
 // Bytes that lie again and again are read again and again: so many times all of them, and so many beside. From there on
 // packets are searched one by one, which reads each byte once.
-constexpr std::uint64_t kMostRereading = 4, kFreeRereading = 1 << 20;
+constexpr std::uint64_t kMaxRereading = 4, kFreeRereading = 1 << 20;
 
 }  // namespace
 
@@ -48,7 +48,7 @@ Status PacketSource::ReadFrom(std::span<const std::uint8_t>& bytes, std::optiona
   if (packet && search_) {
     reader_.Restart(position_, packet->type == PacketType::kGroup && OpensGroup(packet->payload));
     search_.reset();
-    if (reread_ > kMostRereading * position_ + kFreeRereading) search_.emplace(limits_);
+    if (reread_ > kMaxRereading * position_ + kFreeRereading) search_.emplace(limits_);
   }
   return status;
 }

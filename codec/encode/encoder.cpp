@@ -250,7 +250,7 @@ Status Encoder::Impl::Send(std::span<const Vec3f> positions) {
 // A group is no longer than any decoder takes by default.
 bool Encoder::Impl::IsFull(std::uint32_t frames) const {
   return frames == settings_.group ||
-         (std::uint64_t{frames} + 1) * FrameValues(shape_.layouts) > MostGroupValues(settings_.limits, shape_);
+         (std::uint64_t{frames} + 1) * FrameValues(shape_.layouts) > MaxGroupValues(settings_.limits, shape_);
 }
 
 Status Encoder::Impl::SendNow(PositionMatrix positions) {
