@@ -9,7 +9,7 @@
 namespace sac {
 namespace {
 
-// values[i] goes to vertex[i].
+// Returns what each of `count` vertices has: vertex[i] has values[i]. Empty when `values` are.
 template <class Value>
 std::vector<Value> Scatter(const std::vector<Value>& values, std::span<const std::uint32_t> vertex, std::size_t count) {
   std::vector<Value> out(values.empty() ? 0 : count);
@@ -17,99 +17,131 @@ std::vector<Value> Scatter(const std::vector<Value>& values, std::span<const std
   return out;
 }
 
-}  // namespace
-
-Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco, DecodedIFrame& out) {
-  // 1. Welded entries share the vertex of the entry they are welded onto; the others are numbered as they come.
-  const std::size_t entries = draco.entries;
-  std::vector<std::uint32_t> vertex(entries + syntax.loose_vertices.size());
+// An I-frame that is being put together. `vertex` holds the vertex of each of Draco's entries, then of each loose
+// vertex; `grid` holds the position of each vertex.
+struct Assembly {
+  DracoMesh draco;
   std::uint32_t vertices = 0;
+  std::vector<std::uint32_t> vertex;
+  std::vector<Triangle> triangles;
+  std::vector<GridPosition> grid;
+};
+
+Status CheckAttributes(const IFrameSyntax& syntax, const DracoMesh& draco) {
+  if (syntax.loose_vertices.empty()) return Status::Ok();
+  if (!draco.normals.empty() && !syntax.has_normals) {
+    return Status::Corrupt("I-frame: loose vertices without normals");
+  }
+  if (!draco.colors.empty() && !syntax.has_colors) return Status::Corrupt("I-frame: loose vertices without colours");
+  return Status::Ok();
+}
+
+// Joins entries to vertices (spec.md 5.3, step 1): a welded entry shares the vertex of the entry that it is welded
+// onto, the others are numbered in their order.
+Status JoinEntries(const IFrameSyntax& syntax, const SequenceHeader& header, Assembly& out) {
+  const std::uint32_t entries = out.draco.entries;
+  out.vertex.resize(entries + syntax.loose_vertices.size());
   auto weld = syntax.welds.begin();
   for (std::uint32_t e = 0; e < entries; ++e) {
     if (weld != syntax.welds.end() && weld->point == e) {
-      vertex[e] = vertex[weld->onto];
+      out.vertex[e] = out.vertex[weld->onto];
       ++weld;
     } else {
-      vertex[e] = vertices++;
+      out.vertex[e] = out.vertices++;
     }
   }
   if (weld != syntax.welds.end()) return Status::Corrupt("I-frame: a weld of a missing point");
-
-  std::vector<Triangle> triangles = std::move(draco.triangles);
-  for (Triangle& t : triangles) {
-    for (std::uint32_t& v : t) v = vertex[v];
-  }
-
-  if (!draco.normals.empty() && !syntax.has_normals && !syntax.loose_vertices.empty()) {
-    return Status::Corrupt("I-frame: loose vertices without normals");
-  }
-  if (!draco.colors.empty() && !syntax.has_colors && !syntax.loose_vertices.empty()) {
-    return Status::Corrupt("I-frame: loose vertices without colours");
-  }
-
-  if (vertices + syntax.loose_vertices.size() != header.vertices) {
+  if (out.vertices + syntax.loose_vertices.size() != header.vertices) {
     return Status::Corrupt("I-frame: the number of vertices is not the header's");
   }
-
-  // 2. Their positions.
-  std::vector<GridPosition> grid;
-  if (!syntax.mesh.empty()) {
-    SAC_RETURN_IF_ERROR(DecodePositions(syntax.positions, PositionGraph(vertices, triangles),
-                                        {syntax.position_step, syntax.position_slope}, header.position_bits, grid));
+  out.triangles = std::move(out.draco.triangles);
+  for (Triangle& t : out.triangles) {
+    for (std::uint32_t& v : t) v = out.vertex[v];
   }
+  return Status::Ok();
+}
 
-  // 3. Loose vertices and triangles come after Draco's.
-  for (std::size_t i = 0; i < syntax.loose_vertices.size(); ++i) {
-    const LooseVertex& v = syntax.loose_vertices[i];
-    vertex[entries + i] = vertices++;
-    grid.push_back(v.position);
-    if (syntax.has_normals) draco.normals.resize(entries + i), draco.normals.push_back(v.normal);
-    if (syntax.has_colors) draco.colors.resize(entries + i), draco.colors.push_back(v.color);
+// Decodes the positions of the vertices that entries are joined to (spec.md 5.5).
+Status ReadPositions(const IFrameSyntax& syntax, const SequenceHeader& header, Assembly& out) {
+  if (syntax.mesh.empty()) return Status::Ok();
+  return DecodePositions(syntax.positions, PositionGraph(out.vertices, out.triangles),
+                         {syntax.position_step, syntax.position_slope}, header.position_bits, out.grid);
+}
+
+// A corner of a loose triangle takes the texture coordinate of the first corner that its vertex has in Draco's mesh.
+void AddLooseTextureTriangles(const IFrameSyntax& syntax, Assembly& out) {
+  std::vector<Triangle>& uv_triangles = out.draco.uv_triangles;
+  if (uv_triangles.empty() || syntax.loose_triangles.empty()) return;
+  std::vector<std::uint32_t> uv_of_vertex(out.vertices, 0);
+  for (std::size_t j = uv_triangles.size(); j-- > 0;) {
+    for (std::size_t k = 3; k-- > 0;) uv_of_vertex[out.triangles[j][k]] = uv_triangles[j][k];
   }
-  if (triangles.size() + syntax.loose_triangles.size() != header.triangles) {
+  for (const Triangle& t : syntax.loose_triangles) {
+    uv_triangles.push_back({uv_of_vertex[t[0]], uv_of_vertex[t[1]], uv_of_vertex[t[2]]});
+  }
+}
+
+// Adds loose vertices and triangles after Draco's (spec.md 5.3, step 1).
+Status AddLooseParts(const IFrameSyntax& syntax, const SequenceHeader& header, Assembly& out) {
+  DracoMesh& draco = out.draco;
+  if (out.triangles.size() + syntax.loose_triangles.size() != header.triangles) {
     return Status::Corrupt("I-frame: the number of triangles is not the header's");
   }
-  triangles.insert(triangles.end(), syntax.loose_triangles.begin(), syntax.loose_triangles.end());
-  if (!draco.uv_triangles.empty() && !syntax.loose_triangles.empty()) {
-    // A loose triangle's corner takes the texture coordinate of the vertex's first corner in Draco's mesh.
-    std::vector<std::uint32_t> uv_of_vertex(vertices, 0);
-    for (std::size_t j = draco.uv_triangles.size(); j-- > 0;) {
-      for (std::size_t k = 3; k-- > 0;) uv_of_vertex[triangles[j][k]] = draco.uv_triangles[j][k];
-    }
-    for (const Triangle& t : syntax.loose_triangles) {
-      draco.uv_triangles.push_back({uv_of_vertex[t[0]], uv_of_vertex[t[1]], uv_of_vertex[t[2]]});
-    }
+  if (syntax.has_normals && !syntax.loose_vertices.empty()) draco.normals.resize(draco.entries);
+  if (syntax.has_colors && !syntax.loose_vertices.empty()) draco.colors.resize(draco.entries);
+  for (std::size_t i = 0; i < syntax.loose_vertices.size(); ++i) {
+    const LooseVertex& v = syntax.loose_vertices[i];
+    out.vertex[draco.entries + i] = out.vertices++;
+    out.grid.push_back(v.position);
+    if (syntax.has_normals) draco.normals.push_back(v.normal);
+    if (syntax.has_colors) draco.colors.push_back(v.color);
   }
+  AddLooseTextureTriangles(syntax, out);
+  out.triangles.insert(out.triangles.end(), syntax.loose_triangles.begin(), syntax.loose_triangles.end());
+  return Status::Ok();
+}
 
-  // 4. Renumber by component and patch, so that each is a run of vertices.
+// Renumbers the vertices by component and, within it, by patch, so that each of these is a run (spec.md 5.3, step 2).
+void Renumber(std::uint32_t patch_size, Assembly& parts, DecodedMesh& mesh) {
   std::uint32_t components = 0;
-  const std::vector<std::uint32_t> label = LabelComponents(vertices, triangles, components);
+  const std::vector<std::uint32_t> label = LabelComponents(parts.vertices, parts.triangles, components);
   std::vector<std::vector<std::uint32_t>> members(components);
-  for (std::uint32_t v = 0; v < vertices; ++v) members[label[v]].push_back(v);
-  const VertexGraph graph = BuildGraph(vertices, triangles);
-  std::vector<std::uint32_t> renumbered(vertices);
+  for (std::uint32_t v = 0; v < parts.vertices; ++v) members[label[v]].push_back(v);
+  const VertexGraph graph = BuildGraph(parts.vertices, parts.triangles);
+  std::vector<std::uint32_t> renumbered(parts.vertices);
   std::uint32_t next = 0, next_patch = 0;
   for (std::vector<std::uint32_t>& component : members) {
-    out.mesh.components.push_back({next, static_cast<std::uint32_t>(component.size())});
-    const PatchOrder patches = CutIntoPatches(grid, graph, std::move(component), header.patch_size);
+    mesh.components.push_back({next, static_cast<std::uint32_t>(component.size())});
+    const PatchOrder patches = CutIntoPatches(parts.grid, graph, std::move(component), patch_size);
     for (const std::uint32_t v : patches.vertices) renumbered[v] = next++;
     for (const std::uint32_t size : patches.sizes) {
-      out.mesh.patches.push_back({next_patch, size});
+      mesh.patches.push_back({next_patch, size});
       next_patch += size;
     }
   }
-  for (Triangle& t : triangles) {
+  for (Triangle& t : parts.triangles) {
     for (std::uint32_t& v : t) v = renumbered[v];
   }
-  for (std::uint32_t& v : vertex) v = renumbered[v];
+  for (std::uint32_t& v : parts.vertex) v = renumbered[v];
+  mesh.grid = Scatter(parts.grid, renumbered, parts.vertices);
+  mesh.triangles = std::move(parts.triangles);
+}
 
-  out.mesh.grid = Scatter(grid, renumbered, vertices);
-  out.mesh.triangles = std::move(triangles);
-  out.normals = Scatter(draco.normals, vertex, vertices);
-  out.colors = Scatter(draco.colors, vertex, vertices);
-  out.uvs = std::move(draco.uvs);
-  out.uv_triangles = std::move(draco.uv_triangles);
-  out.vertex_of_entry = std::move(vertex);
+}  // namespace
+
+Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco, DecodedIFrame& out) {
+  Assembly parts;
+  parts.draco = std::move(draco);
+  SAC_RETURN_IF_ERROR(CheckAttributes(syntax, parts.draco));
+  SAC_RETURN_IF_ERROR(JoinEntries(syntax, header, parts));
+  SAC_RETURN_IF_ERROR(ReadPositions(syntax, header, parts));
+  SAC_RETURN_IF_ERROR(AddLooseParts(syntax, header, parts));
+  Renumber(header.patch_size, parts, out.mesh);
+  out.normals = Scatter(parts.draco.normals, parts.vertex, parts.vertices);
+  out.colors = Scatter(parts.draco.colors, parts.vertex, parts.vertices);
+  out.uvs = std::move(parts.draco.uvs);
+  out.uv_triangles = std::move(parts.draco.uv_triangles);
+  out.vertex_of_entry = std::move(parts.vertex);
   return Status::Ok();
 }
 
