@@ -20,14 +20,13 @@ const HarmonicBasis& BasisOf(const Shape& shape, Plane plane) {
 
 }  // namespace
 
-Positions ToPositions(const PositionMatrix& matrix) {
-  Positions out(static_cast<std::size_t>(matrix.rows()));
-  for (std::size_t v = 0; v < out.size(); ++v) {
+void ToPositions(const PositionMatrix& matrix, Positions& positions) {
+  positions.resize(static_cast<std::size_t>(matrix.rows()));
+  for (std::size_t v = 0; v < positions.size(); ++v) {
     for (std::size_t a = 0; a < 3; ++a) {
-      out[v][a] = static_cast<float>(matrix(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(a)));
+      positions[v][a] = static_cast<float>(matrix(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(a)));
     }
   }
-  return out;
 }
 
 Eigen::VectorXd PlaneUnits(const Shape& shape, const SequenceHeader& header, Plane plane) {
@@ -133,42 +132,51 @@ const PositionMatrix& Reconstructor::Add(Plane plane, const PlaneValues& values)
   return aligned_;
 }
 
-Eigen::Matrix3d Reconstructor::Rotation(const RigidMotion& rigid) const {
-  const auto vector = rigid.rotation();
-  return RotationOf(Eigen::Vector3d(vector[0], vector[1], vector[2]) * static_cast<double>(header_.rotation_step));
+RigidTransform Reconstructor::TransformOf(const RigidMotion& rigid) const {
+  const auto rotation = rigid.rotation(), translation = rigid.translation();
+  return {
+      RotationOf(Eigen::Vector3d(rotation[0], rotation[1], rotation[2]) * static_cast<double>(header_.rotation_step)),
+      shape_.centre + Eigen::RowVector3d(translation[0], translation[1], translation[2]) *
+                          static_cast<double>(header_.translation_step)};
 }
 
-Eigen::RowVector3d Reconstructor::Translation(const RigidMotion& rigid) const {
-  const auto vector = rigid.translation();
-  return shape_.centre +
-         Eigen::RowVector3d(vector[0], vector[1], vector[2]) * static_cast<double>(header_.translation_step);
+RigidTransform Reconstructor::TransformBetween(const RigidMotion& from, const RigidMotion& to, double t) const {
+  const RigidTransform a = TransformOf(from), b = TransformOf(to);
+  return {Eigen::Quaterniond(a.rotation).slerp(t, Eigen::Quaterniond(b.rotation)).toRotationMatrix(),
+          (1 - t) * a.translation + t * b.translation};
+}
+
+void Reconstructor::Transform(const PositionMatrix& aligned, const RigidTransform& transform,
+                              PositionMatrix& moved) const {
+  moved.resize(aligned.rows(), 3);
+  const auto x = aligned.col(0).array() - shape_.centre[0];
+  const auto y = aligned.col(1).array() - shape_.centre[1];
+  const auto z = aligned.col(2).array() - shape_.centre[2];
+  // Written out, since a product of matrices allocates.
+  for (Eigen::Index a = 0; a < 3; ++a) {
+    const auto row = transform.rotation.row(a);
+    moved.col(a).array() = (x * row[0] + y * row[1] + z * row[2]) + transform.translation[a];
+  }
 }
 
 PositionMatrix Reconstructor::ApplyRigid(const PositionMatrix& aligned, const RigidMotion& rigid) const {
-  const Eigen::Matrix3d transposed = Rotation(rigid).transpose();  // positions are rows
-  PositionMatrix moved = (aligned.rowwise() - shape_.centre) * transposed;
-  moved.rowwise() += Translation(rigid);
-  return moved;
-}
-
-PositionMatrix Reconstructor::ApplyRigidBetween(const RigidMotion& from, const RigidMotion& to, double t) const {
-  const Eigen::Quaterniond a(Rotation(from)), b(Rotation(to));
-  const Eigen::Matrix3d transposed = a.slerp(t, b).toRotationMatrix().transpose();
-  PositionMatrix moved = (aligned_.rowwise() - shape_.centre) * transposed;
-  moved.rowwise() += (1 - t) * Translation(from) + t * Translation(to);
+  PositionMatrix moved;
+  Transform(aligned, TransformOf(rigid), moved);
   return moved;
 }
 
 PositionMatrix Reconstructor::RemoveRigid(const PositionMatrix& positions, const RigidMotion& rigid) const {
-  PositionMatrix aligned = (positions.rowwise() - Translation(rigid)) * Rotation(rigid);
+  const RigidTransform transform = TransformOf(rigid);
+  PositionMatrix aligned = (positions.rowwise() - transform.translation) * transform.rotation;
   aligned.rowwise() += shape_.centre;
   return aligned;
 }
 
-PositionMatrix Reconstructor::Reconstruct(const FrameCoefficients& frame) {
-  ReconstructMotion(frame.planes[kMotion]);
-  for (const Plane p : {kDisplacement, kDetail, kCorrection}) Add(p, frame.planes[p]);
-  return ApplyRigid(aligned_, frame.rigid);
+const PositionMatrix& Reconstructor::Reconstruct(const FramePlanes& planes, const RigidTransform& transform) {
+  ReconstructMotion(planes[kMotion]);
+  for (const Plane p : {kDisplacement, kDetail, kCorrection}) Add(p, planes[p]);
+  Transform(aligned_, transform, moved_);
+  return moved_;
 }
 
 }  // namespace sac

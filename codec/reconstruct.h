@@ -14,8 +14,14 @@
 
 namespace sac {
 
-// Rounded to floats, once.
-Positions ToPositions(const PositionMatrix& matrix);
+// Rounds `matrix` to floats: the only place where positions are rounded.
+void ToPositions(const PositionMatrix& matrix, Positions& positions);
+
+// A rotation about the centre of the first frame, after which the centre is at `translation`, model units.
+struct RigidTransform {
+  Eigen::Matrix3d rotation;
+  Eigen::RowVector3d translation;
+};
 
 // The values of one plane at the vertices, harmonics times coefficients (spec.md 6.5.1). Only harmonics whose
 // coefficients changed are touched.
@@ -58,25 +64,30 @@ class Reconstructor {
   const PositionMatrix& ReconstructMotion(const PlaneValues& motion);
   // Adds another plane, in their order, to what there is of the frame.
   const PositionMatrix& Add(Plane plane, const PlaneValues& values);
-  // The frame in model units: `aligned` after its rigid motion (spec.md 6.5.4).
+  // The transform of a rigid motion (spec.md 6.5.4).
+  RigidTransform TransformOf(const RigidMotion& rigid) const;
+  // The transform at `t` between two rigid motions, 0: `from`, 1: `to`. The rotation takes the shorter way, whatever
+  // turns the rotation vectors have in them: each group unwraps rotations from its own begin. Non-normative.
+  RigidTransform TransformBetween(const RigidMotion& from, const RigidMotion& to, double t) const;
+
+  // The positions `aligned` after a rigid motion, model units.
   PositionMatrix ApplyRigid(const PositionMatrix& aligned, const RigidMotion& rigid) const;
-  // Likewise of what there is of the frame, after a motion between two, `t` of 0 to 1. Of rotations it takes the
-  // shorter way, whatever turns their vectors have in them: groups unwrap rotations each from its own begin.
-  // Non-normative.
-  PositionMatrix ApplyRigidBetween(const RigidMotion& from, const RigidMotion& to, double t) const;
-  // The inverse, for encoders: positions as they were before the rigid motion.
+  // The inverse of ApplyRigid(), for encoders.
   PositionMatrix RemoveRigid(const PositionMatrix& positions, const RigidMotion& rigid) const;
 
-  // All of the above: a frame's positions in model units.
-  PositionMatrix Reconstruct(const FrameCoefficients& frame);
+  // All of the above: the positions, model units, of a frame with these planes and transform. The matrix is overwritten
+  // by the next call.
+  const PositionMatrix& Reconstruct(const FramePlanes& planes, const RigidTransform& transform);
+  const PositionMatrix& Reconstruct(const FrameCoefficients& frame) {
+    return Reconstruct(frame.planes, TransformOf(frame.rigid));
+  }
 
   // The shape that the next frame's motion is measured against.
   const PositionMatrix& reference() const { return reference_is_key_ ? shape_.positions : aligned_; }
 
  private:
   bool UseKeyReference();
-  Eigen::Matrix3d Rotation(const RigidMotion& rigid) const;
-  Eigen::RowVector3d Translation(const RigidMotion& rigid) const;
+  void Transform(const PositionMatrix& aligned, const RigidTransform& transform, PositionMatrix& moved) const;
 
   const Shape& shape_;
   SequenceHeader header_;
@@ -86,6 +97,7 @@ class Reconstructor {
   bool reference_is_key_ = false;
   DeformationGradients gradients_;
   PositionMatrix aligned_;  // the frame before its rigid motion
+  PositionMatrix moved_;    // and after it
 };
 
 }  // namespace sac

@@ -237,7 +237,7 @@ Status Decoder::Impl::DecodeIFrame(std::span<const std::uint8_t> payload) {
   if (!SameFingerprint(Fingerprint(shape_.basis, shape_.patch_basis), syntax.fingerprint)) {
     return Status::Unsupported("the harmonics computed here are not the encoder's");
   }
-  out.positions = ToPositions(shape_.positions);
+  ToPositions(shape_.positions, out.positions);
   mesh = std::move(out);
   order = std::move(syntax.order);
   return Status::Ok();

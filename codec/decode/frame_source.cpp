@@ -5,7 +5,6 @@
 #include <exception>
 #include <limits>
 #include <string>
-#include <system_error>
 #include <thread>
 #include <utility>
 
@@ -18,10 +17,24 @@ std::int32_t Between(std::int32_t a, std::int32_t b, double t) {
   return static_cast<std::int32_t>(std::lround(a + t * (static_cast<double>(b) - a)));
 }
 
-PlaneValues Between(const PlaneValues& a, const PlaneValues& b, double t) {
-  PlaneValues out(a.size());
-  for (std::size_t i = 0; i < out.size(); ++i) out[i] = Between(a[i], b[i], t);
-  return out;
+void Between(const FramePlanes& a, const FramePlanes& b, double t, FramePlanes& out) {
+  for (std::size_t p = 0; p < kPlanes; ++p) {
+    out[p].resize(a[p].size());
+    for (std::size_t i = 0; i < out[p].size(); ++i) out[p][i] = Between(a[p][i], b[p][i], t);
+  }
+}
+
+Status CorruptFrame(std::uint32_t frame, const char* why) {
+  return Status::Corrupt("frame " + std::to_string(frame) + ": " + why);
+}
+
+// Rounds what was reconstructed of `frame`. kCorrupt when that is beyond floats.
+Status Round(const PositionMatrix& matrix, std::uint32_t frame, Positions& positions) {
+  if (!(matrix.array().abs() <= std::numeric_limits<float>::max()).all()) {
+    return CorruptFrame(frame, "positions that are not finite");
+  }
+  ToPositions(matrix, positions);
+  return Status::Ok();
 }
 
 }  // namespace
@@ -35,7 +48,7 @@ Status FrameSource::Take(CodedFrames frames, bool starts_group) {
   before_.reset();
   if (!now_.frames.empty() && now_.end() == frames.first) before_ = std::move(now_.frames.back());
   now_ = {};
-  ready_.clear();
+  DropReady();
   if (starts_group || !reconstructors_[0]) SAC_RETURN_IF_ERROR(Restart());
   now_ = std::move(frames);
   return Status::Ok();
@@ -44,11 +57,11 @@ Status FrameSource::Take(CodedFrames frames, bool starts_group) {
 void FrameSource::Drop() {
   before_.reset();
   now_ = {};
-  ready_.clear();
+  DropReady();
 }
 
 Status FrameSource::Restart() {
-  ready_.clear();
+  DropReady();
   for (std::unique_ptr<Reconstructor>& r : reconstructors_) {
     if (!r) r = std::make_unique<Reconstructor>(shape_, header_);
     if (!r->StartGroup()) return Status::Corrupt("the first frame's shape is singular");
@@ -64,60 +77,49 @@ const CodedFrames::Frame* FrameSource::Find(std::uint32_t frame) const {
 
 Status FrameSource::ReconstructWith(Reconstructor& with, std::uint32_t frame, Positions& positions) const {
   const CodedFrames::Frame& coded = now_.frames[frame - now_.first];
-  const auto corrupt = [frame](const char* why) {
-    return Status::Corrupt("frame " + std::to_string(frame) + ": " + why);
-  };
-  if (!coded.whole) return corrupt("its bytes are missing");
-  if (!with.StartFrame(coded.intra)) return corrupt("the reference shape is singular");
-  const PositionMatrix matrix = with.Reconstruct(coded.coefficients);
-  if (!(matrix.array().abs() <= std::numeric_limits<float>::max()).all())
-    return corrupt("positions that are not finite");
-  positions = ToPositions(matrix);
-  return Status::Ok();
+  if (!coded.whole) return CorruptFrame(frame, "its bytes are missing");
+  if (!with.StartFrame(coded.intra)) return CorruptFrame(frame, "the reference shape is singular");
+  return Round(with.Reconstruct(coded.coefficients), frame, positions);
+}
+
+void FrameSource::ReconstructRun(std::size_t job) {
+  for (std::size_t i = job * kRun; i < std::min(ready_count_, (job + 1) * kRun); ++i) {
+    Ready& r = ready_[i];
+    try {
+      r.status = ReconstructWith(*reconstructors_[job], r.frame, r.positions);
+    } catch (const std::exception&) {
+      r.status = Status::Limit("out of memory");
+    }
+  }
 }
 
 void FrameSource::ReconstructAhead(std::uint32_t frame, std::uint32_t step) {
-  ready_.clear();
-  const std::uint64_t most = std::uint64_t{kRun} * reconstructors_.size();
-  ready_.reserve(most);
-  for (std::uint64_t f = frame; f < now_.end() && ready_.size() < most; f += step) {
-    ready_.push_back({static_cast<std::uint32_t>(f), {}, {}});
+  DropReady();
+  ready_.resize(kRun * reconstructors_.size());
+  for (std::uint64_t f = frame; f < now_.end() && ready_count_ < ready_.size(); f += step) {
+    ready_[ready_count_++].frame = static_cast<std::uint32_t>(f);
   }
-  const auto run = [this](std::size_t thread) {
-    for (std::size_t i = thread * kRun; i < std::min(ready_.size(), (thread + 1) * kRun); ++i) {
-      Ready& r = ready_[i];
-      try {
-        r.status = ReconstructWith(*reconstructors_[thread], r.frame, r.positions);
-      } catch (const std::exception&) {
-        r.status = Status::Limit("out of memory");
-      }
-    }
-  };
-  std::vector<std::jthread> others;
+  std::vector<std::thread> others;
   others.reserve(reconstructors_.size());
-  for (std::size_t t = 1; t * kRun < ready_.size(); ++t) {
+  for (std::size_t job = 1; job * kRun < ready_count_; ++job) {
     try {
-      others.emplace_back(run, t);
-    } catch (const std::system_error&) {  // there are too many already
-      run(t);
+      others.emplace_back([this, job] { ReconstructRun(job); });
+    } catch (const std::exception&) {  // there are too many threads already, or there is no memory for one more
+      ReconstructRun(job);
     }
   }
-  run(0);
+  ReconstructRun(0);
+  for (std::thread& other : others) other.join();
 }
 
 Status FrameSource::Reconstruct(std::uint32_t frame, std::uint32_t step, Positions& positions) {
   if (reconstructors_.size() == 1 || now_.frames.size() == 1) {
     return ReconstructWith(*reconstructors_[0], frame, positions);
   }
-  const auto is_it = [frame](const Ready& r) { return r.frame == frame; };
-  auto at = std::find_if(ready_.begin(), ready_.end(), is_it);
-  if (at == ready_.end()) {
-    ReconstructAhead(frame, step);
-    at = ready_.begin();
-  }
-  const Ready ready = std::move(*at);
-  ready_.erase(ready_.begin(), at + 1);
-  positions = std::move(ready.positions);
+  while (first_ready_ < ready_count_ && ready_[first_ready_].frame != frame) ++first_ready_;
+  if (first_ready_ == ready_count_) ReconstructAhead(frame, step);
+  Ready& ready = ready_[first_ready_++];
+  positions.swap(ready.positions);
   return ready.status;
 }
 
@@ -125,23 +127,13 @@ Status FrameSource::Interpolate(double time, Positions& positions) {
   const double floor = std::floor(time);
   const auto frame = static_cast<std::uint32_t>(floor);
   const CodedFrames::Frame* const a = Find(frame);
-  const CodedFrames::Frame* b = time == floor ? a : Find(frame + 1);
-  if (!a->whole || !b->whole) {
-    return Status::Corrupt("frame " + std::to_string(frame) + " or the next is lost");
-  }
+  const CodedFrames::Frame* const b = time == floor ? a : Find(frame + 1);
+  if (!a->whole || !b->whole) return Status::Corrupt("frame " + std::to_string(frame) + " or the next is lost");
   const FrameCoefficients &from = a->coefficients, &to = b->coefficients;
   const double t = time - floor;
-  Reconstructor& reconstructor = *reconstructors_[0];
-  reconstructor.ReconstructMotion(Between(from.planes[kMotion], to.planes[kMotion], t));
-  for (const Plane p : {kDisplacement, kDetail, kCorrection}) {
-    reconstructor.Add(p, Between(from.planes[p], to.planes[p], t));
-  }
-  const PositionMatrix matrix = reconstructor.ApplyRigidBetween(from.rigid, to.rigid, t);
-  if (!(matrix.array().abs() <= std::numeric_limits<float>::max()).all()) {
-    return Status::Corrupt("frame " + std::to_string(frame) + ": positions that are not finite");
-  }
-  positions = ToPositions(matrix);
-  return Status::Ok();
+  Between(from.planes, to.planes, t, between_);
+  Reconstructor& with = *reconstructors_[0];
+  return Round(with.Reconstruct(between_, with.TransformBetween(from.rigid, to.rigid, t)), frame, positions);
 }
 
 }  // namespace sac

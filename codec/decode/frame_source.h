@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -17,30 +18,31 @@ namespace sac {
 // Holds the coefficients of the frames that were read last, and turns them into positions.
 class FrameSource {
  public:
-  // `shape` must outlive it. `threads`, one at least, reconstruct frames that do not depend on each other.
+  // `shape` must outlive the object. `threads`, one at least, reconstruct frames that do not depend on each other.
   FrameSource(const Shape& shape, const SequenceHeader& header, unsigned threads);
 
-  // Frames of a new group, or the next one of an open group. The last frame of those before is kept for Interpolate().
-  // kCorrupt when the first frame's shape is singular.
+  // Holds the frames of a new group, or the next frame of an open group. The last frame of those before is kept for
+  // Interpolate(). kCorrupt when the first frame's shape is singular.
   Status Take(CodedFrames frames, bool starts_group);
-  // The same frames from the first on. Likewise.
+  // Goes back to the first of the frames that are held. kCorrupt when the first frame's shape is singular.
   Status Restart();
-  // Holds no frames.
+  // Holds no frames any more.
   void Drop();
   const CodedFrames& frames() const { return now_; }
   bool Holds(std::uint32_t frame) const { return Find(frame) != nullptr; }
-  // Whether a frame that it holds needed no other.
+  // Whether a frame that is held needed no other.
   bool IsIntra(std::uint32_t frame) const { return Find(frame) != nullptr && Find(frame)->intra; }
 
-  // The positions of a frame that frames() has. Frames are asked for by ascending numbers, and all of them where they
-  // are measured against the frame before; `step` says which one is likely to be the next. kCorrupt, with the frame's
+  // Gives the positions of a frame that frames() has. Frames are asked for by ascending numbers, and all of them where
+  // they are measured against the frame before; the next one is likely to be `step` later. kCorrupt, with the frame's
   // number.
   Status Reconstruct(std::uint32_t frame, std::uint32_t step, Positions& positions);
 
-  // At `time`, in frames; holds the frames before and after. See Decoder::Interpolate().
+  // Gives the positions at `time`, in frames, whose frames before and after are held. See Decoder::Interpolate().
   Status Interpolate(double time, Positions& positions);
 
  private:
+  // A frame that is reconstructed ahead of being asked for.
   struct Ready {
     std::uint32_t frame = 0;
     Status status;
@@ -49,15 +51,22 @@ class FrameSource {
 
   const CodedFrames::Frame* Find(std::uint32_t frame) const;
   Status ReconstructWith(Reconstructor& with, std::uint32_t frame, Positions& positions) const;
-  // A batch of frames, each thread a run of them.
+  // Reconstructs a batch of frames from `frame` on, each thread a run of them.
   void ReconstructAhead(std::uint32_t frame, std::uint32_t step);
+  // Reconstructs the run of frames of job number `job` of that batch.
+  void ReconstructRun(std::size_t job);
+  void DropReady() { first_ready_ = ready_count_ = 0; }
 
   const Shape& shape_;
   SequenceHeader header_;
   std::vector<std::unique_ptr<Reconstructor>> reconstructors_;  // one a thread
   CodedFrames now_;
   std::optional<CodedFrames::Frame> before_;  // the frame of number now_.first - 1
-  std::vector<Ready> ready_;                  // ascending
+  // Frames by ascending numbers, of which those from first_ready_ to before ready_count_ are ready. All keep their
+  // memory for the next batch.
+  std::vector<Ready> ready_;
+  std::size_t first_ready_ = 0, ready_count_ = 0;
+  FramePlanes between_;  // of Interpolate(), which keeps their memory
 };
 
 }  // namespace sac
