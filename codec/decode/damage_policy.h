@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstdint>
+#include <utility>
+
+#include "codec/decode/lost_frames.h"
+#include "sac/status.h"
+
+namespace sac {
+
+// Decides, for everything that a stream may have wrong, whether the decoder stops or passes over it, and remembers the
+// frames that are lost with what is passed over (DecoderSettings::skip_damage).
+class DamagePolicy {
+ public:
+  explicit DamagePolicy(bool skips) : skips_(skips) {}
+
+  // Whether damage is passed over at all.
+  bool skips() const { return skips_; }
+
+  // Returns the status that decoding goes on with after a part of the stream gave `status`: ok when that part is passed
+  // over. A part that exceeds a limit is sound and never passed over: its frames would be missing without damage.
+  Status Judge(Status status) const { return PassesOver(status) ? Status::Ok() : status; }
+
+  // Judges the status of a part that holds the frames from `first` to before `end`, which are lost when it is passed
+  // over.
+  Status Judge(Status status, std::uint64_t first, std::uint64_t end) {
+    if (PassesOver(status)) lost_.Add(first, end);
+    return Judge(std::move(status));
+  }
+
+  // Notes that the frames from `first` to before `end` are lost.
+  void Lose(std::uint64_t first, std::uint64_t end) { lost_.Add(first, end); }
+  const LostFrames& lost() const { return lost_; }
+
+ private:
+  bool PassesOver(const Status& status) const { return skips_ && !status.ok() && status.code() != StatusCode::kLimit; }
+
+  bool skips_;
+  LostFrames lost_;
+};
+
+}  // namespace sac

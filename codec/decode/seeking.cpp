@@ -1,0 +1,81 @@
+// How a StreamDecoder goes to other frames and to times between frames.
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "codec/decode/stream_decoder.h"
+#include "format/stream_index.h"
+
+namespace sac {
+
+Status StreamDecoder::Seek(std::uint32_t frame, std::uint64_t& byte) {
+  if (!groups_) return Status::NeedMoreData();
+  if (total_frames_ && frame >= *total_frames_) return BeyondTheEnd(frame);
+  const SeekTable::Place place = places_.Find(frame);
+  byte = place.byte;
+  packets_.Restart(byte);
+  start_.Restart();
+  groups_->Seek(place.first_frame, frame);
+  error_.reset();
+  ended_ = finished_ = false;
+  return Status::Ok();
+}
+
+Status StreamDecoder::SeekTime(double seconds, std::uint64_t& byte) {
+  const std::optional<SequenceHeader>& header = start_.header();
+  if (!header) return Status::NeedMoreData();
+  if (header->frame_rate_numerator == 0) return Status::InvalidArgument("the stream has no frame rate");
+  const double time = seconds * header->frames_per_second();
+  // The time that a frame itself is given out with must lead to it, although that time is rounded.
+  const double frame = std::floor(time + 1e-9 + 4e-16 * time);
+  if (!(frame >= 0 && frame <= 0xffffffffu)) return Status::InvalidArgument("a time that is no frame's");
+  return Seek(static_cast<std::uint32_t>(frame), byte);
+}
+
+Status StreamDecoder::AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed) {
+  StreamIndex index;
+  SAC_RETURN_IF_ERROR(ReadIndex(tail, settings_.limits, index, needed));
+  places_.Take(index);
+  total_frames_ = 0;
+  for (const StreamIndex::Group& group : index.groups) *total_frames_ += group.frames;
+  return Status::Ok();
+}
+
+Status StreamDecoder::Interpolate(double time, Positions& positions, FrameInfo& info, const FrameBuffers* buffers) {
+  if (error_) return *error_;
+  if (!(time >= 0 && time <= 0xfffffffeu)) return Status::InvalidArgument("a time that is no frame's");
+  if (!groups_) return Status::NeedMoreData();
+  SAC_RETURN_IF_ERROR(Check(buffers));
+  if (start_.header()->references_previous()) {
+    return Status::Unsupported("frames measured against the frame before have none between");
+  }
+  if (total_frames_ && time >= *total_frames_) return BeyondTheEnd(time);
+  if (total_frames_) time = std::min(time, *total_frames_ - 1.0);  // the last frame is held for its time
+  SAC_RETURN_IF_ERROR(ReadAround(time));
+  SAC_RETURN_IF_ERROR(groups_->Interpolate(time, positions));
+  GiveOut(static_cast<std::uint32_t>(time), time, positions, info, buffers);
+  return Status::Ok();
+}
+
+Status StreamDecoder::ReadAround(double time) {
+  while (!groups_->HoldsAround(time)) {
+    SAC_RETURN_IF_ERROR(groups_->CanCome(time));
+    groups_->PassOverFrames();
+    if (CanAdvance()) {
+      SAC_RETURN_IF_ERROR(AdvanceAlone());
+    } else if (ended_ || finished_) {
+      const auto frame = static_cast<std::uint32_t>(time);
+      return Status::InvalidArgument("frame " + std::to_string(frame) + " or the next is not there");
+    } else {
+      return Status::NeedMoreData();
+    }
+  }
+  return Status::Ok();
+}
+
+Status StreamDecoder::BeyondTheEnd(double time) const {
+  return Status::InvalidArgument("frame " + std::to_string(static_cast<std::uint32_t>(time)) + " of a clip of " +
+                                 std::to_string(*total_frames_) + " frames");
+}
+
+}  // namespace sac
