@@ -19,10 +19,11 @@ void Require(const Status& status) {
   std::exit(1);
 }
 
-Clip MakeClip(std::uint32_t vertices) {
+CodedClip MakeClip(std::uint32_t vertices) {
   SynthClip source;
   Require(SynthClip::Create({.kind = SynthKind::kWalker, .vertices = vertices, .frames = kFrames}, source));
-  Clip clip;
+  CodedClip coded;
+  Clip& clip = coded.clip;
   clip.mesh = source.mesh();
   std::unique_ptr<Encoder> encoder;
   Require(Encoder::Create(clip.mesh, {}, encoder));
@@ -31,14 +32,14 @@ Clip MakeClip(std::uint32_t vertices) {
     Require(encoder->Send(clip.frames.back()));
   }
   Require(encoder->Finish());
-  clip.stream = encoder->TakeBytes();
-  return clip;
+  coded.stream = encoder->TakeBytes();
+  return coded;
 }
 
 }  // namespace
 
-const Clip& WalkerClip(std::uint32_t vertices) {
-  static std::map<std::uint32_t, Clip> clips;
+const CodedClip& WalkerClip(std::uint32_t vertices) {
+  static std::map<std::uint32_t, CodedClip> clips;
   const auto found = clips.find(vertices);
   return found != clips.end() ? found->second : clips.emplace(vertices, MakeClip(vertices)).first->second;
 }

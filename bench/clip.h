@@ -4,20 +4,19 @@
 #include <cstdint>
 #include <vector>
 
-#include "sac/mesh.h"
+#include "sac/clip.h"
 
 namespace sac::bench {
 
 inline constexpr std::uint32_t kFrames = 256;  // two groups of the default settings
 
-// A synthetic walker and its stream at the default settings.
-struct Clip {
-  Mesh mesh;
-  std::vector<Positions> frames;
+// A clip and its stream at the default settings.
+struct CodedClip {
+  Clip clip;
   std::vector<std::uint8_t> stream;
 };
 
-// Made once for each number of vertices; ends the program when that fails.
-const Clip& WalkerClip(std::uint32_t vertices);
+// A synthetic walker, made once for each number of vertices. Ends the program when that fails.
+const CodedClip& WalkerClip(std::uint32_t vertices);
 
 }  // namespace sac::bench

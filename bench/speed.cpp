@@ -30,8 +30,8 @@ void Require(const Status& status) {
 
 std::uint32_t Vertices(const benchmark::State& state) { return static_cast<std::uint32_t>(state.range(0)); }
 
-void CountVertices(benchmark::State& state, const Clip& clip) {
-  state.counters["vertices"] = static_cast<double>(clip.mesh.positions.size());
+void CountVertices(benchmark::State& state, const CodedClip& coded) {
+  state.counters["vertices"] = static_cast<double>(coded.clip.mesh.positions.size());
 }
 
 // The header and the I-frame of a clip, to start step by step as the decoder does.
@@ -40,8 +40,8 @@ struct StreamStart {
   IFrameSyntax syntax;
   DecodedIFrame decoded;
 
-  explicit StreamStart(const Clip& clip) {
-    std::span<const std::uint8_t> bytes = clip.stream;
+  explicit StreamStart(const CodedClip& coded) {
+    std::span<const std::uint8_t> bytes = coded.stream;
     PacketReader packets{Limits{}};
     std::optional<Packet> packet;
     Require(packets.Read(bytes, packet));
@@ -66,47 +66,47 @@ struct StreamStart {
 
 // A player's wait: from the first byte to the first frame, with the integers of its group.
 void StartDecoder(benchmark::State& state) {
-  const Clip& clip = WalkerClip(Vertices(state));
+  const CodedClip& coded = WalkerClip(Vertices(state));
   DecodedFrame frame;
   for ([[maybe_unused]] auto step : state) {
     Decoder decoder;
-    std::span<const std::uint8_t> bytes = clip.stream;
+    std::span<const std::uint8_t> bytes = coded.stream;
     do {
       Require(decoder.Send(bytes));
     } while (!decoder.Receive(frame).ok());
   }
-  CountVertices(state, clip);
+  CountVertices(state, coded);
 }
 
 // The wait's parts.
 void StartMesh(benchmark::State& state) {
-  const Clip& clip = WalkerClip(Vertices(state));
-  StreamStart start(clip);
+  const CodedClip& coded = WalkerClip(Vertices(state));
+  StreamStart start(coded);
   for ([[maybe_unused]] auto step : state) start.DecodeMesh();
-  CountVertices(state, clip);
+  CountVertices(state, coded);
 }
 
 void StartHarmonics(benchmark::State& state) {
-  const Clip& clip = WalkerClip(Vertices(state));
-  const StreamStart start(clip);
+  const CodedClip& coded = WalkerClip(Vertices(state));
+  const StreamStart start(coded);
   for ([[maybe_unused]] auto step : state) benchmark::DoNotOptimize(start.MakeShape());
-  CountVertices(state, clip);
+  CountVertices(state, coded);
 }
 
 void StartFactorization(benchmark::State& state) {
-  const Clip& clip = WalkerClip(Vertices(state));
-  const StreamStart start(clip);
+  const CodedClip& coded = WalkerClip(Vertices(state));
+  const StreamStart start(coded);
   const Shape shape = start.MakeShape();
   for ([[maybe_unused]] auto step : state) {
     PoissonSystem poisson(shape.edges, shape.components, shape.masses);
     if (!poisson.SetReference(shape.positions, shape.weights)) state.SkipWithError("singular");
   }
-  CountVertices(state, clip);
+  CountVertices(state, coded);
 }
 
 // All frames, once the mesh is there.
 void DecodeFrames(benchmark::State& state) {
-  const Clip& clip = WalkerClip(Vertices(state));
+  const CodedClip& coded = WalkerClip(Vertices(state));
   DecodedFrame frame;
   PeakMemory memory;
   memory.Start();
@@ -114,7 +114,7 @@ void DecodeFrames(benchmark::State& state) {
   for ([[maybe_unused]] auto step : state) {
     state.PauseTiming();
     std::optional<Decoder> decoder(std::in_place);
-    std::span<const std::uint8_t> bytes = clip.stream;
+    std::span<const std::uint8_t> bytes = coded.stream;
     while (decoder->mesh() == nullptr) Require(decoder->Send(bytes));
     state.ResumeTiming();
     while (!bytes.empty()) {
@@ -128,67 +128,67 @@ void DecodeFrames(benchmark::State& state) {
   }
   state.counters["frames/s"] = benchmark::Counter(static_cast<double>(frames), benchmark::Counter::kIsRate);
   state.counters["peak_MB"] = memory.Megabytes();
-  CountVertices(state, clip);
+  CountVertices(state, coded);
 }
 
 // Any frame of the clip, from the request to its positions: its group is read, and the one frame reconstructed. The
 // last frame of a group takes longest, since models adapt through all before it.
 void SeekAnywhere(benchmark::State& state) {
-  const Clip& clip = WalkerClip(Vertices(state));
+  const CodedClip& coded = WalkerClip(Vertices(state));
   Decoder decoder;
   DecodedFrame frame;
-  std::span<const std::uint8_t> bytes = clip.stream;
+  std::span<const std::uint8_t> bytes = coded.stream;
   while (decoder.mesh() == nullptr) Require(decoder.Send(bytes));
   std::uint32_t wanted = 0;
   for ([[maybe_unused]] auto step : state) {
     wanted = (wanted + 131) % kFrames;  // of groups of 128, another one each time
     std::uint64_t byte = 0;
     Require(decoder.Seek(wanted, byte));
-    bytes = std::span(clip.stream).subspan(byte);
+    bytes = std::span(coded.stream).subspan(byte);
     while (!decoder.Receive(frame).ok()) Require(decoder.Send(bytes));
   }
-  CountVertices(state, clip);
+  CountVertices(state, coded);
 }
 
 // Likewise within the group that was read last, as when a user scrubs.
 void SeekInGroup(benchmark::State& state) {
-  const Clip& clip = WalkerClip(Vertices(state));
+  const CodedClip& coded = WalkerClip(Vertices(state));
   Decoder decoder;
   DecodedFrame frame;
-  std::span<const std::uint8_t> bytes = clip.stream;
+  std::span<const std::uint8_t> bytes = coded.stream;
   std::uint64_t byte = 0;
   while (!decoder.Receive(frame).ok()) Require(decoder.Send(bytes));
   std::uint32_t wanted = 0;
   for ([[maybe_unused]] auto step : state) {
     wanted = (wanted + 37) % 128;
     Require(decoder.Seek(wanted, byte));
-    bytes = std::span(clip.stream).subspan(byte);
+    bytes = std::span(coded.stream).subspan(byte);
     while (!decoder.Receive(frame).ok()) Require(decoder.Send(bytes));
   }
-  CountVertices(state, clip);
+  CountVertices(state, coded);
 }
 
 void StartEncoder(benchmark::State& state) {
-  const Clip& clip = WalkerClip(Vertices(state));
+  const CodedClip& coded = WalkerClip(Vertices(state));
   for ([[maybe_unused]] auto step : state) {
     std::unique_ptr<Encoder> encoder;
-    Require(Encoder::Create(clip.mesh, {}, encoder));
+    Require(Encoder::Create(coded.clip.mesh, {}, encoder));
   }
-  CountVertices(state, clip);
+  CountVertices(state, coded);
 }
 
 // All frames, the encoder's start left out.
 void EncodeFrames(benchmark::State& state) {
-  const Clip& clip = WalkerClip(Vertices(state));
+  const CodedClip& coded = WalkerClip(Vertices(state));
   PeakMemory memory;
   memory.Start();
   double bytes = 0;
   for ([[maybe_unused]] auto step : state) {
     state.PauseTiming();
     std::unique_ptr<Encoder> encoder;
-    Require(Encoder::Create(clip.mesh, {}, encoder));
+    Require(Encoder::Create(coded.clip.mesh, {}, encoder));
     state.ResumeTiming();
-    for (const Positions& frame : clip.frames) Require(encoder->Send(frame));
+    for (const Positions& frame : coded.clip.frames) Require(encoder->Send(frame));
     Require(encoder->Finish());
     bytes = static_cast<double>(encoder->TakeBytes().size());
     state.PauseTiming();
@@ -197,8 +197,8 @@ void EncodeFrames(benchmark::State& state) {
   }
   state.counters["frames/s"] = benchmark::Counter(kFrames, benchmark::Counter::kIsIterationInvariantRate);
   state.counters["peak_MB"] = memory.Megabytes();
-  state.counters["bpvf"] = 8 * bytes / (kFrames * static_cast<double>(clip.mesh.positions.size()));
-  CountVertices(state, clip);
+  state.counters["bpvf"] = 8 * bytes / (kFrames * static_cast<double>(coded.clip.mesh.positions.size()));
+  CountVertices(state, coded);
 }
 
 void Sizes(benchmark::internal::Benchmark* b) { b->Arg(2000)->Arg(10000)->Arg(40000)->Unit(benchmark::kMillisecond); }

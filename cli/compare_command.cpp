@@ -28,14 +28,15 @@ Status Measure(const CompareOptions& options, ClipInput& original, DistortionMet
   if (decoded->mesh().positions.size() != vertices) {
     return differ("vertices", vertices, decoded->mesh().positions.size());
   }
-  if (decoded->frame_count() != original.frame_count()) {
-    return differ("frames", original.frame_count(), decoded->frame_count());
+  const std::uint32_t frames = *original.frame_count();
+  if (decoded->frame_count() != frames) {
+    return differ("frames", frames, *decoded->frame_count());
   }
-  Progress progress(original.frame_count());
+  Progress progress(frames);
   ErrorMeter meter(original.mesh().triangles, vertices);
   Positions a, b;
   bool end = false;
-  for (std::uint32_t f = 0; f < original.frame_count(); ++f) {
+  for (std::uint32_t f = 0; f < frames; ++f) {
     SAC_RETURN_IF_ERROR(original.Next(a, end));
     SAC_RETURN_IF_ERROR(decoded->Next(b, end));
     meter.Add(a, b);

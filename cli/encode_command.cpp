@@ -1,23 +1,28 @@
 #include <unistd.h>
 
 #include <chrono>
-#include <cmath>
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "cli/checked_encoding.h"
 #include "cli/commands.h"
-#include "cli/distortion_report.h"
+#include "cli/encoding_report.h"
 #include "cli/error_option.h"
 #include "cli/number_option.h"
+#include "cli/progress.h"
 #include "files/cache_file.h"
+#include "files/clip_input.h"
 #include "files/frame_rate.h"
 #include "files/mesh_file.h"
+#include "files/output_file.h"
 #include "files/overwriting.h"
+#include "files/vertex_order.h"
+#include "geometry/bounding_box.h"
+#include "sac/clip_encoder.h"
 
 namespace sac {
 namespace {
@@ -26,132 +31,105 @@ constexpr double kLeastTarget = 1e-6, kLargestTarget = 1e6;
 constexpr double kLeastStep = 1e-9, kLargestStep = 1e9;
 
 struct EncodeOptions {
-  CheckedEncoding::Settings settings;
+  std::vector<std::string> inputs;  // as for ClipInput
+  std::string output;               // `-` is standard output
+  std::string order_map;            // the file for the order of the vertices; empty: none
+  ClipEncoding encoding;
+  std::optional<ErrorLength> max_error;  // becomes the encoder's
   std::optional<double> quality;
   std::string reference = "key";
   bool json = false;
 };
 
 Status CheckOptions(EncodeOptions& options) {
-  CheckedEncoding::Settings& s = options.settings;
-  if (s.encoder.keep_order && !s.order_map.empty()) {
+  EncoderSettings& encoder = options.encoding.encoder;
+  if (encoder.keep_order && !options.order_map.empty()) {
     return Status::InvalidArgument("--keep-order and --order-map exclude each other");
   }
-  if (s.output.empty()) return Status::InvalidArgument("--output: no name");
-  if (s.order_map == "-") return Status::InvalidArgument("--order-map: must be a file");
-  for (const std::string& path : {s.output, s.order_map}) {
+  if (options.output.empty()) return Status::InvalidArgument("--output: no name");
+  if (options.order_map == "-") return Status::InvalidArgument("--order-map: must be a file");
+  for (const std::string& path : {options.output, options.order_map}) {
     if (IsReadableMeshName(path) || IsCacheName(path)) {
       return Status::InvalidArgument(path + ": a mesh or a cache by its name, not a .sac stream or an order map");
     }
   }
-  if (s.output == "-" && isatty(STDOUT_FILENO) == 1) {
+  if (options.output == "-" && isatty(STDOUT_FILENO) == 1) {
     return Status::InvalidArgument("standard output is a terminal, which cannot show a stream");
   }
-  if (s.targets.any()) {
+  if (options.encoding.targets.any()) {
     for (const auto& [name, given] : {std::pair{"--quality", options.quality.has_value()},
-                                      {"--motion-step", s.encoder.motion_step.has_value()},
-                                      {"--displacement-step", s.encoder.displacement_step.has_value()},
-                                      {"--detail-step", s.encoder.detail_step.has_value()},
-                                      {"--position-bits", s.encoder.position_bits.has_value()},
-                                      {"--max-error", s.max_error.has_value()}}) {
+                                      {"--motion-step", encoder.motion_step.has_value()},
+                                      {"--displacement-step", encoder.displacement_step.has_value()},
+                                      {"--detail-step", encoder.detail_step.has_value()},
+                                      {"--position-bits", encoder.position_bits.has_value()},
+                                      {"--max-error", options.max_error.has_value()}}) {
       if (given) return Status::InvalidArgument(std::string(name) + " and a target exclude each other");
     }
   }
-  if (options.quality) s.encoder.quality = *options.quality;
-  if (options.reference == "previous") s.encoder.reference_shape = ReferenceShape::kPrevious;
-  std::vector<std::string> outputs{s.output};
-  if (!s.order_map.empty()) outputs.push_back(s.order_map);
-  return CheckOverwriting(FilesOfInput(s.inputs), outputs);
+  if (options.quality) encoder.quality = *options.quality;
+  if (options.reference == "previous") encoder.reference_shape = ReferenceShape::kPrevious;
+  std::vector<std::string> outputs{options.output};
+  if (!options.order_map.empty()) outputs.push_back(options.order_map);
+  return CheckOverwriting(FilesOfInput(options.inputs), outputs);
 }
 
-std::string RateText(const StreamInfo& info) {
-  const std::string numerator = std::to_string(info.frame_rate_numerator);
-  return info.frame_rate_denominator == 1 ? numerator : numerator + "/" + std::to_string(info.frame_rate_denominator);
+Status AtInput(const EncodeOptions& options, const std::string& message) {
+  return Status::InvalidArgument(options.inputs.front() + ": " + message);
 }
 
-// They add up to the stream. The encoder counts in whole bytes.
-std::vector<std::pair<const char*, long long>> Parts(const StreamBytes& parts) {
-  return {{"header", std::llround(parts.header)}, {"i_frame", std::llround(parts.i_frame)},
-          {"motion", std::llround(parts.motion)}, {"displacement", std::llround(parts.displacement)},
-          {"detail", std::llround(parts.detail)}, {"correction", std::llround(parts.correction)},
-          {"side", std::llround(parts.side)}};
-}
-
-Json ToJson(const EncodeOptions& options, const CheckedEncoding& encoding, double seconds) {
-  const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(); };
-  const StreamInfo& info = encoding.info();
-  Json json;
-  for (const auto& [part, bytes] : Parts(encoding.parts())) json[part] = bytes;
-  json["bytes"] = encoding.bytes();
-  json["bpvf"] = 8 * static_cast<double>(encoding.bytes()) /
-                 (static_cast<double>(info.vertices) * static_cast<double>(encoding.frames()));
-  if (!options.settings.unchecked) AddDistortion(encoding.distortion(), json);
-  json["frames"] = encoding.frames();
-  json["vertices"] = info.vertices;
-  json["triangles"] = info.triangles;
-  json["harmonics"] = info.harmonics;
-  json["seconds"] = seconds;
-  if (options.settings.targets.any()) json["trials"] = encoding.trials();
-  const EncoderSettings& encoder = encoding.encoder_settings();
-  Json& settings = json["settings"];
-  settings["target_kg"] = or_null(options.settings.targets.kg);
-  settings["target_sted"] = or_null(options.settings.targets.sted);
-  settings["target_bpvf"] = or_null(options.settings.targets.bpvf);
-  settings["quality"] = encoder.quality;
-  settings["fps"] = info.frame_rate_numerator == 0 ? Json() : Json(RateText(info));
-  settings["harmonics"] = or_null(encoder.harmonics);  // null: from the quality
-  settings["samples_per_harmonic"] = encoder.samples_per_harmonic;
-  settings["group"] = encoder.group;
-  settings["pyramid"] = encoder.low_delay ? 1 : encoder.pyramid;
-  settings["low_delay"] = encoder.low_delay;
-  settings["reference"] = options.reference;
-  settings["motion_step"] = or_null(encoder.motion_step);
-  settings["displacement_step"] = or_null(encoder.displacement_step);
-  settings["detail_step"] = or_null(encoder.detail_step);
-  settings["max_error"] = or_null(encoder.max_error);
-  settings["position_bits"] = or_null(encoder.position_bits);
-  settings["keep_order"] = encoder.keep_order;
-  return json;
-}
-
-void PrintText(const Json& json, const CheckedEncoding& encoding, std::FILE* file) {
-  const StreamInfo& info = encoding.info();
-  const std::uint32_t frames = encoding.frames();
-  const auto bytes = static_cast<double>(encoding.bytes());
-  const double raw = 12 * static_cast<double>(info.vertices) * static_cast<double>(frames);
-  std::fprintf(file, "%u frames, %u vertices, %u triangles\n", frames, info.vertices, info.triangles);
-  std::fprintf(file, "%.0f bytes, 1 : %.1f of raw float32, %.4g bits a vertex and frame\n", bytes, raw / bytes,
-               json["bpvf"].get<double>());
-  for (const auto& [part, size] : Parts(encoding.parts())) {
-    std::fprintf(file, "  %-12s %10lld bytes %5.1f %%\n", part, size, 100 * static_cast<double>(size) / bytes);
+// A bound in diagonals becomes one in model units.
+Status TakeMaxError(const EncodeOptions& options, const Mesh& mesh, EncoderSettings& encoder) {
+  if (!options.max_error) return Status::Ok();
+  const double diagonal = BoundingBox(mesh.positions).diagonal();
+  if (options.max_error->in_diagonals && diagonal == 0) {
+    return AtInput(options, "its first frame is a single point: --max-error needs model units");
   }
-  if (json.contains("kg")) PrintDistortion(encoding.distortion(), file);
-  if (encoding.trials() > 0) {
-    const EncoderSettings& s = encoding.encoder_settings();
-    std::fprintf(
-        file,
-        "found in %u trials: --motion-step %.4g --displacement-step %.4g --detail-step %.4g --position-bits %.5g "
-        "--harmonics %u\n",
-        encoding.trials(), *s.motion_step, *s.displacement_step, *s.detail_step, *s.position_bits, *s.harmonics);
+  encoder.max_error = options.max_error->value * (options.max_error->in_diagonals ? diagonal : 1);
+  return Status::Ok();
+}
+
+// The files get their names at the end. Every message names a file.
+Status EncodeFiles(const EncodeOptions& options, EncodedClip& encoded) {
+  Progress progress;
+  progress.Begin("harmonics");
+  std::unique_ptr<ClipInput> input;
+  SAC_RETURN_IF_ERROR(ClipInput::Open(options.inputs, input));
+  ClipEncoding encoding = options.encoding;
+  SAC_RETURN_IF_ERROR(TakeMaxError(options, input->mesh(), encoding.encoder));
+  // The outputs before the harmonics, which take long.
+  OutputFile stream, order_map;
+  SAC_RETURN_IF_ERROR(stream.Open(options.output));
+  if (!options.order_map.empty()) SAC_RETURN_IF_ERROR(order_map.Open(options.order_map));
+  progress.SetTotal(input->frame_count());
+  encoding.progress = [&progress](const EncodingProgress& p) {
+    progress.SetPass(p.trial > 0 ? "trial " + std::to_string(p.trial) + ", " : "");
+    if (p.frames > 0) progress.FramesDone(p.frames);
+    return true;
+  };
+  const auto sink = [&stream](std::span<const std::uint8_t> bytes) { return stream.Write(bytes.data(), bytes.size()); };
+  SAC_RETURN_IF_ERROR(EncodeClip(*input, encoding, sink, encoded));
+  if (!options.order_map.empty()) {
+    SAC_RETURN_IF_ERROR(order_map.Write(FormatOrderMap(encoded.order)));
+    SAC_RETURN_IF_ERROR(order_map.Close());  // the disk may be full
   }
-  std::fprintf(file, "%.2f seconds\n", json["seconds"].get<double>());
+  SAC_RETURN_IF_ERROR(stream.Commit());
+  return options.order_map.empty() ? Status::Ok() : order_map.Commit();
 }
 
 Status Encode(const EncodeOptions& options) {
   const auto start = std::chrono::steady_clock::now();
-  CheckedEncoding encoding(options.settings);
-  SAC_RETURN_IF_ERROR(encoding.Run());
+  EncodedClip encoded;
+  SAC_RETURN_IF_ERROR(EncodeFiles(options, encoded));
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (encoding.lost_texture_coordinates()) {
+  if (encoded.lost_texture_coordinates) {
     std::fprintf(stderr, "sac: warning: %s: its texture coordinates cannot be coded, the stream has none\n",
-                 options.settings.inputs.front().c_str());
+                 options.inputs.front().c_str());
   }
-  std::FILE* file = IsStandardOutput(options.settings.output) ? stderr : stdout;
-  const Json json = ToJson(options, encoding, seconds);
+  std::FILE* file = IsStandardOutput(options.output) ? stderr : stdout;
   if (options.json) {
-    std::fputs(JsonLine(json).c_str(), file);
+    std::fputs(JsonLine(EncodingJson(options.encoding, encoded, seconds)).c_str(), file);
   } else {
-    PrintText(json, encoding, file);
+    PrintEncoding(options.encoding, encoded, seconds, file);
   }
   return Status::Ok();
 }
@@ -172,17 +150,15 @@ void AddFrameRate(CLI::App& app, EncoderSettings& encoder) {
 }
 
 void AddOptions(CLI::App& app, EncodeOptions& o) {
-  EncoderSettings& encoder = o.settings.encoder;
-  app.add_option("INPUT", o.settings.inputs,
+  EncoderSettings& encoder = o.encoding.encoder;
+  app.add_option("INPUT", o.inputs,
                  "a mesh and its point cache (mesh.obj clip.pc2, mesh.ply clip.mdd), or meshes one a frame, or a "
                  "pattern of them (frame_%04d.obj); .obj, .ply, .off, .stl, .om")
       ->required()
       ->option_text("...");
-  app.add_option("-o,--output", o.settings.output, "the stream to write; - is standard output")
-      ->required()
-      ->option_text("FILE");
+  app.add_option("-o,--output", o.output, "the stream to write; - is standard output")->required()->option_text("FILE");
   AddNumber(app, "--quality", o.quality, 0.0, 100.0, "0 (smallest) to 100 (nearest to the input) [50]");
-  RateTargets& targets = o.settings.targets;
+  RateTargets& targets = o.encoding.targets;
   AddNumber(app, "--target-kg", targets.kg, kLeastTarget, kLargestTarget,
             "search for the smallest stream of at most this KG, percent: the clip is encoded 3 to 24 times");
   AddNumber(app, "--target-sted", targets.sted, kLeastTarget, kLargestTarget, "likewise of at most this STED");
@@ -211,7 +187,7 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
             "quantizer step of displacement, as a fraction of the first frame's RMS radius [from the quality]");
   AddNumber(app, "--detail-step", encoder.detail_step, 0.0, kLargestStep,
             "quantizer step of local detail, as a fraction of the RMS radius; 0 for none [from the quality]");
-  AddMaxError(app, o.settings.max_error);
+  AddMaxError(app, o.max_error);
   AddNumber(
       app, "--position-bits", encoder.position_bits, 1.0, 24.0,
       "log2 of the first frame's extent in steps, at edges of median length; may be a fraction [from the quality]");
@@ -219,10 +195,9 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
   AddNumber(app, "--repeat-start", encoder.repeat_start, 0u, 0xffffffffu,
             "header and first frame again before every so many groups, for those who join in the middle [never]");
   app.add_flag("--keep-order", encoder.keep_order, "put the order of the vertices in the stream");
-  app.add_option("--order-map", o.settings.order_map,
-                 "write the order of the vertices to a file, for decode --order-map")
+  app.add_option("--order-map", o.order_map, "write the order of the vertices to a file, for decode --order-map")
       ->option_text("FILE");
-  app.add_flag("--unchecked", o.settings.unchecked, "neither decode nor measure what is written: in half the time");
+  app.add_flag("!--unchecked", o.encoding.measure, "neither decode nor measure what is written: in half the time");
   app.add_flag("--json", o.json, "report sizes in bytes, distortion and settings as one JSON object");
 }
 

@@ -17,6 +17,7 @@ class Progress {
   Progress(const Progress&) = delete;
   Progress& operator=(const Progress&) = delete;
 
+  void SetTotal(std::optional<std::uint32_t> total) { total_ = total; }
   // `text` until the first frame is done.
   void Begin(const std::string& text);
   // What is said before the frames from now on: which pass over the clip this is.

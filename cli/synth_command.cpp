@@ -37,7 +37,7 @@ Status Synthesize(const SynthOptions& options) {
   progress.Begin("shape");
   SAC_RETURN_IF_ERROR(SynthClip::Create(options.settings, clip));
   std::unique_ptr<ClipOutput> output;
-  SAC_RETURN_IF_ERROR(ClipOutput::Open(options.output, clip.mesh(), {clip.fps(), clip.frames()}, output));
+  SAC_RETURN_IF_ERROR(ClipOutput::Open(options.output, clip.mesh(), {clip.rate().per_second(), clip.frames()}, output));
   for (std::uint32_t f = 0; f < clip.frames(); ++f) {
     SAC_RETURN_IF_ERROR(output->Write(f, clip.Frame(f)));
     progress.FramesDone(f + 1);

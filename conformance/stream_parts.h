@@ -10,17 +10,13 @@
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
 #include "format/sequence_header.h"
+#include "sac/clip.h"
 #include "sac/encoder.h"
 #include "sac/mesh.h"
 
 namespace sac {
 
 using Bytes = std::vector<std::uint8_t>;
-
-struct Clip {
-  Mesh mesh;
-  std::vector<Positions> frames;
-};
 
 // The pieces of a stream, to be changed one by one and put together again. All failures end the program: the vectors
 // are made of known input.

@@ -6,6 +6,7 @@
 #include <system_error>
 
 #include "files/frame_pattern.h"
+#include "files/frame_rate.h"
 #include "files/mesh_file.h"
 
 namespace sac {
@@ -35,6 +36,7 @@ Status CheckCacheFrame(const Positions& positions, const std::string& path, std:
 Status ClipInput::Open(const std::vector<std::string>& arguments, std::unique_ptr<ClipInput>& input) {
   if (arguments.empty()) return Status::InvalidArgument("no input");
   auto opened = std::make_unique<ClipInput>();
+  opened->name_ = arguments[0];
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (IsCacheName(arguments[i]) && !(i == 1 && arguments.size() == 2)) {
       return Status::InvalidArgument(arguments[i] + ": a cache comes alone after its mesh file");
@@ -77,14 +79,24 @@ Status ClipInput::OpenSequence() {
   return CheckFinite(mesh_.positions, paths_[0] + ": vertex");
 }
 
-std::optional<double> ClipInput::fps() const { return cache_ ? cache_->fps() : std::nullopt; }
+FrameRate ClipInput::rate() const {
+  const std::optional<double> fps = cache_ ? cache_->fps() : std::nullopt;
+  return fps ? NearestFrameRate(*fps) : FrameRate{};
+}
 
-std::uint32_t ClipInput::frame_count() const {
+std::optional<std::uint32_t> ClipInput::frame_count() const { return frames(); }
+
+Status ClipInput::Rewind() {
+  next_ = 0;
+  return Status::Ok();
+}
+
+std::uint32_t ClipInput::frames() const {
   return cache_ ? cache_->frame_count() : static_cast<std::uint32_t>(paths_.size());
 }
 
 Status ClipInput::Next(Positions& frame, bool& end) {
-  end = next_ == frame_count();
+  end = next_ == frames();
   if (end) return Status::Ok();
   if (next_ == 0) {
     frame = mesh_.positions;

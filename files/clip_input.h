@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "files/cache_file.h"
+#include "sac/clip.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
 
@@ -14,32 +15,35 @@ namespace sac {
 
 // The encoder's input: the frames of a clip one after the other, each with the vertices of the first and finite.
 // Memory is one frame, whatever their number. Every message starts with the path of the file at fault.
-class ClipInput {
+class ClipInput : public ClipReader {
  public:
   // `arguments` are `mesh.EXT cache.pc2|.mdd`, or one or several mesh files, or one pattern such as `frame_%04d.ply`
   // (see FramePattern; an existing file of that very name comes first). Reads the first frame.
   static Status Open(const std::vector<std::string>& arguments, std::unique_ptr<ClipInput>& input);
 
   // The first frame: triangles and attributes of the (first) mesh file; with a cache, the positions are the cache's.
-  const Mesh& mesh() const { return mesh_; }
+  const Mesh& mesh() const override { return mesh_; }
 
-  // Where the input says so: an MDD does, other inputs do not.
-  std::optional<double> fps() const;
+  // An MDD has times, from which the rate is derived; other inputs have none.
+  FrameRate rate() const override;
 
   // At least 1.
-  std::uint32_t frame_count() const;
+  std::optional<std::uint32_t> frame_count() const override;
 
-  // Reads the next frame, beginning with the first; `end` is set, and `frame` left alone, after the last.
-  // kInvalidArgument: another number of vertices, other triangles, or a coordinate that is NaN or infinite.
-  Status Next(Positions& frame, bool& end);
+  // The first file.
+  std::string name() const override { return name_; }
 
-  // Begins again with the first frame.
-  void Rewind() { next_ = 0; }
+  // kInvalidArgument for another number of vertices, other triangles, or a coordinate that is NaN or infinite.
+  Status Next(Positions& frame, bool& end) override;
+  Status Rewind() override;
 
  private:
   Status OpenCache(const std::string& mesh_path, const std::string& cache_path);
   Status OpenSequence();
 
+  std::uint32_t frames() const;
+
+  std::string name_;
   Mesh mesh_;
   std::vector<std::string> paths_;  // of a sequence
   std::unique_ptr<CacheReader> cache_;

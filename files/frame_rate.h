@@ -1,15 +1,10 @@
 #pragma once
 
-#include <cstdint>
 #include <string_view>
 
-namespace sac {
+#include "sac/clip.h"
 
-// Frames per second as the stream holds them, in lowest terms.
-struct FrameRate {
-  std::uint32_t numerator = 0;  // 0: unknown
-  std::uint32_t denominator = 1;
-};
+namespace sac {
 
 // Reads `24`, `30000/1001` or a decimal. A decimal of two or more digits after the point that is a multiple of
 // 1000/1001, rounded, means that one: 29.97 is 30000/1001, 23.976 and 23.98 are 24000/1001. Any other decimal is taken

@@ -5,19 +5,10 @@
 
 #include "metrics/kg.h"
 #include "metrics/sted.h"
+#include "sac/distortion.h"
 #include "sac/mesh.h"
 
 namespace sac {
-
-// The distortion of a decoded animation against its original.
-struct DistortionMetrics {
-  double kg = 0;         // percent, see KgError; infinite only if the original has no spread: write null in JSON
-  double sted = 0;       // sqrt(sted_s^2 + kStedWeight^2 sted_t^2), no unit
-  double sted_s = 0;     // spatial part, see SpatialSted
-  double sted_t = 0;     // temporal part, see TemporalSted; 0 with a single frame
-  double max_error = 0;  // largest distance between a vertex and its decoded position, in model units
-  std::size_t frames = 0;
-};
 
 // Measures an animation frame by frame. Memory does not depend on the number of frames: about 370 bytes a vertex of a
 // closed surface.

@@ -3,7 +3,9 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <optional>
 
+#include "sac/clip.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
 
@@ -41,7 +43,7 @@ struct SynthSettings {
 //   SynthClip clip;
 //   SAC_RETURN_IF_ERROR(SynthClip::Create({.kind = SynthKind::kFlag, .vertices = 10000}, clip));
 //   for (std::uint32_t f = 0; f < clip.frames(); ++f) Use(clip.Frame(f));
-class SynthClip {
+class SynthClip : public ClipReader {
  public:
   // An empty clip.
   SynthClip() = default;
@@ -51,19 +53,30 @@ class SynthClip {
   static Status Create(const SynthSettings& settings, SynthClip& clip);
 
   // Frame 0 with its attributes.
-  const Mesh& mesh() const { return mesh_; }
+  const Mesh& mesh() const override { return mesh_; }
+  FrameRate rate() const override { return {kFps, 1}; }
+  std::optional<std::uint32_t> frame_count() const override { return frames_; }
+  Status Next(Positions& frame, bool& end) override {
+    end = next_ == frames_;
+    if (!end) frame = Frame(next_++);
+    return Status::Ok();
+  }
+  Status Rewind() override {
+    next_ = 0;
+    return Status::Ok();
+  }
 
   std::uint32_t frames() const { return frames_; }
   double fps() const { return kFps; }
 
   // Positions in metres, y up, of any frame below frames(), in any order. May be called from several threads at once.
-  Positions Frame(std::uint32_t f) const { return motion_(f / kFps); }
+  Positions Frame(std::uint32_t f) const { return motion_(f / double{kFps}); }
 
  private:
-  static constexpr double kFps = 30;
+  static constexpr std::uint32_t kFps = 30;
 
   Mesh mesh_;
-  std::uint32_t frames_ = 0;
+  std::uint32_t frames_ = 0, next_ = 0;
   std::function<Positions(double seconds)> motion_;
 };
 

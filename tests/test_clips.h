@@ -8,17 +8,12 @@
 #include <memory>
 #include <vector>
 
+#include "sac/clip.h"
 #include "sac/decoder.h"
 #include "sac/encoder.h"
 #include "tests/test_meshes.h"
 
 namespace sac {
-
-// A mesh and its positions over time; the first frame's are the mesh's own.
-struct Clip {
-  Mesh mesh;
-  std::vector<Positions> frames;
-};
 
 struct Encoded {
   std::vector<std::uint8_t> bytes;

@@ -5,7 +5,7 @@
 namespace sac::bench {
 
 int RunArrayPeer(int argc, char** argv, const ArrayPeer& peer) {
-  const auto encode = [&](const PeerClip& clip, const std::string& setting, PeerStream& stream) {
+  const auto encode = [&](const Clip& clip, const std::string& setting, PeerStream& stream) {
     double number = 0;
     if (!ParseNumber(setting, number)) return Status::InvalidArgument(setting + ": not a number");
     ByteWriter out;
@@ -22,11 +22,11 @@ int RunArrayPeer(int argc, char** argv, const ArrayPeer& peer) {
     stream.bytes = out.bytes();
     return Status::Ok();
   };
-  const auto decode = [&](std::span<const std::uint8_t> bytes, PeerClip& clip) {
+  const auto decode = [&](std::span<const std::uint8_t> bytes, Clip& clip) {
     ByteReader in(bytes);
     Connectivity connectivity;
     SAC_RETURN_IF_ERROR(ReadConnectivity(in, connectivity));
-    clip.triangles = connectivity.triangles;
+    clip.mesh.triangles = connectivity.triangles;
     clip.frames.assign(in.Varint(), Positions(connectivity.vertices));
     if (clip.frames.empty()) return Status::Corrupt("no frames");
     SAC_RETURN_IF_ERROR(peer.decode(in, clip.frames));

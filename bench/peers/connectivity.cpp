@@ -90,13 +90,13 @@ Status OrderOfDraco(std::span<const Triangle> triangles, std::size_t vertices, s
   return Status::Ok();
 }
 
-Status WriteConnectivity(const PeerClip& clip, ByteWriter& out, Connectivity& connectivity) {
+Status WriteConnectivity(const Clip& clip, ByteWriter& out, Connectivity& connectivity) {
   std::vector<std::uint8_t> bytes;
   Positions ignored;
   // All vertices in one place: their positions cost a few bytes.
-  SAC_RETURN_IF_ERROR(EncodeWithDraco(clip.triangles, Positions(clip.vertices()), 0, bytes));
+  SAC_RETURN_IF_ERROR(EncodeWithDraco(clip.mesh.triangles, Positions(clip.vertices()), 0, bytes));
   SAC_RETURN_IF_ERROR(DecodeWithDraco(bytes, connectivity.triangles, ignored));
-  SAC_RETURN_IF_ERROR(OrderOfDraco(clip.triangles, clip.vertices(), connectivity.order));
+  SAC_RETURN_IF_ERROR(OrderOfDraco(clip.mesh.triangles, clip.vertices(), connectivity.order));
   if (connectivity.order.size() != ignored.size()) return Status::Corrupt("Draco: another order for other positions");
   std::vector<bool> coded(clip.vertices());
   for (const std::uint32_t v : connectivity.order) coded[v] = true;

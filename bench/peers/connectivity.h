@@ -19,7 +19,7 @@ struct Connectivity {
   std::vector<std::uint32_t> order;  // of the input; empty in a decoder
 };
 
-Status WriteConnectivity(const PeerClip& clip, ByteWriter& out, Connectivity& connectivity);
+Status WriteConnectivity(const Clip& clip, ByteWriter& out, Connectivity& connectivity);
 Status ReadConnectivity(ByteReader& in, Connectivity& connectivity);
 
 // A mesh by Draco with the positions as float32, quantized to `bits` of their own extent, or as int32 when `bits` is 0.

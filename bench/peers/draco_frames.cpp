@@ -8,14 +8,14 @@
 namespace sac::bench {
 namespace {
 
-Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stream) {
+Status Encode(const Clip& clip, const std::string& setting, PeerStream& stream) {
   double bits = 0;
   if (!ParseNumber(setting, bits)) return Status::InvalidArgument(setting + ": not a number of bits");
-  SAC_RETURN_IF_ERROR(OrderOfDraco(clip.triangles, clip.vertices(), stream.order));
+  SAC_RETURN_IF_ERROR(OrderOfDraco(clip.mesh.triangles, clip.vertices(), stream.order));
   ByteWriter out;
   for (const Positions& frame : clip.frames) {
     std::vector<std::uint8_t> bytes;
-    SAC_RETURN_IF_ERROR(EncodeWithDraco(clip.triangles, frame, static_cast<int>(bits), bytes));
+    SAC_RETURN_IF_ERROR(EncodeWithDraco(clip.mesh.triangles, frame, static_cast<int>(bits), bytes));
     out.Varint(static_cast<std::uint32_t>(bytes.size()));
     out.Bytes(bytes);
   }
@@ -23,11 +23,11 @@ Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stre
   return Status::Ok();
 }
 
-Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
+Status Decode(std::span<const std::uint8_t> bytes, Clip& clip) {
   ByteReader in(bytes);
   while (in.ok() && in.remaining() > 0) {
     const std::uint32_t size = in.Varint();
-    SAC_RETURN_IF_ERROR(DecodeWithDraco(in.Bytes(size), clip.triangles, clip.frames.emplace_back()));
+    SAC_RETURN_IF_ERROR(DecodeWithDraco(in.Bytes(size), clip.mesh.triangles, clip.frames.emplace_back()));
   }
   return in.ok() ? Status::Ok() : Status::Corrupt("truncated stream");
 }

@@ -69,7 +69,7 @@ void AddIds(std::size_t vertices, Buffer& buffer, json& gltf) {
   gltf["meshes"][0]["primitives"][0]["attributes"]["TEXCOORD_0"] = buffer.AddFloats(ids, "VEC2", 2);
 }
 
-void AddAnimation(const PeerClip& clip, Buffer& buffer, json& gltf) {
+void AddAnimation(const Clip& clip, Buffer& buffer, json& gltf) {
   const std::size_t frames = clip.frames.size();
   std::vector<float> times, weights(frames * (frames - 1));
   for (std::size_t f = 0; f < frames; ++f) times.push_back(static_cast<float>(f) / 30);
@@ -127,13 +127,13 @@ bool Decompress(const json& extension, std::span<const std::uint8_t> code, std::
 
 }  // namespace
 
-Status WriteGltf(const PeerClip& clip, bool ids, const std::string& path) {
+Status WriteGltf(const Clip& clip, bool ids, const std::string& path) {
   json gltf{{"asset", {{"version", "2.0"}}}, {"scene", 0}};
   gltf["scenes"] = {{{"nodes", {0}}}};
   gltf["nodes"] = {{{"mesh", 0}}};
   Buffer buffer(gltf);
-  const std::size_t indices = buffer.Add(clip.triangles.data(), clip.triangles.size() * sizeof(Triangle),
-                                         3 * clip.triangles.size(), kUnsignedInt, "SCALAR");
+  const std::size_t indices = buffer.Add(clip.mesh.triangles.data(), clip.mesh.triangles.size() * sizeof(Triangle),
+                                         3 * clip.mesh.triangles.size(), kUnsignedInt, "SCALAR");
   gltf["meshes"] = {{{"primitives", {{{"indices", indices}, {"mode", 4}}}}}};
   gltf["meshes"][0]["primitives"][0]["attributes"]["POSITION"] = buffer.AddPositions(clip.frames[0]);
   if (ids) AddIds(clip.vertices(), buffer, gltf);

@@ -15,7 +15,7 @@ namespace sac::bench {
 // Writes PATH.gltf and PATH.bin: the first frame as a mesh, every other one as a morph target, and an animation that
 // shows them one after the other. `ids` instead: the first frame alone, with each vertex's number as texture
 // coordinates (v mod 4096, v / 4096).
-Status WriteGltf(const PeerClip& clip, bool ids, const std::string& path);
+Status WriteGltf(const Clip& clip, bool ids, const std::string& path);
 
 // A binary glTF file with one mesh, as gltfpack makes it: quantized, EXT_meshopt_compression.
 class GlbFile {

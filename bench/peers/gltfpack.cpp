@@ -29,7 +29,7 @@ std::string FindGltfpack() {
   return "";
 }
 
-Status Run(const PeerClip& clip, bool ids, const std::vector<std::string>& options, std::vector<std::uint8_t>& bytes) {
+Status Run(const Clip& clip, bool ids, const std::vector<std::string>& options, std::vector<std::uint8_t>& bytes) {
   const TemporaryDirectory directory("sac-gltfpack-");
   if (directory.path().empty()) return Status::IoError("no temporary directory");
   const std::string path = directory.Path("clip"), packed = directory.Path("packed.glb");
@@ -46,7 +46,7 @@ Status Run(const PeerClip& clip, bool ids, const std::vector<std::string>& optio
 }
 
 // The input's vertices in gltfpack's order.
-Status FindOrder(const PeerClip& clip, std::vector<std::uint32_t>& order) {
+Status FindOrder(const Clip& clip, std::vector<std::uint32_t>& order) {
   std::vector<std::uint8_t> bytes;
   SAC_RETURN_IF_ERROR(Run(clip, true, {"-noq", "-kv"}, bytes));
   GlbFile file;
@@ -63,17 +63,17 @@ Status FindOrder(const PeerClip& clip, std::vector<std::uint32_t>& order) {
   return Status::Ok();
 }
 
-Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
+Status Decode(std::span<const std::uint8_t> bytes, Clip& clip) {
   GlbFile file;
   SAC_RETURN_IF_ERROR(file.Open(bytes));
-  SAC_RETURN_IF_ERROR(file.Triangles(clip.triangles));
+  SAC_RETURN_IF_ERROR(file.Triangles(clip.mesh.triangles));
   return file.Frames(clip.frames);
 }
 
-Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stream) {
+Status Encode(const Clip& clip, const std::string& setting, PeerStream& stream) {
   SAC_RETURN_IF_ERROR(Run(clip, false, {"-vp", setting}, stream.bytes));
   SAC_RETURN_IF_ERROR(FindOrder(clip, stream.order));
-  PeerClip decoded;
+  Clip decoded;
   SAC_RETURN_IF_ERROR(Decode(stream.bytes, decoded));
   // Vertices that are alike in all frames become one, but keep their numbers apart.
   if (decoded.vertices() != stream.order.size()) return Status::Unsupported("gltfpack has merged vertices");

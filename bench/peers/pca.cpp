@@ -90,7 +90,7 @@ std::vector<int> Quantize(const VectorXd& values, float step) {
 }
 
 // Vertices' paths in the order of coding: 3F x n.
-MatrixXd PathsOf(const PeerClip& clip, const std::vector<std::uint32_t>& order) {
+MatrixXd PathsOf(const Clip& clip, const std::vector<std::uint32_t>& order) {
   MatrixXd paths(3 * clip.frames.size(), order.size());
   for (std::size_t f = 0; f < clip.frames.size(); ++f) {
     for (std::size_t v = 0; v < order.size(); ++v) {
@@ -127,7 +127,7 @@ Code QuantizeBasis(const MatrixXd& centred, const VectorXd& mean, std::uint32_t 
   return code;
 }
 
-Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stream) {
+Status Encode(const Clip& clip, const std::string& setting, PeerStream& stream) {
   double wanted = 0;
   if (!ParseNumber(setting, wanted)) return Status::InvalidArgument(setting + ": not a number of components");
   ByteWriter out;
@@ -163,7 +163,7 @@ Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stre
   return Status::Ok();
 }
 
-Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
+Status Decode(std::span<const std::uint8_t> bytes, Clip& clip) {
   ByteReader in(bytes);
   Connectivity connectivity;
   SAC_RETURN_IF_ERROR(ReadConnectivity(in, connectivity));
@@ -182,7 +182,7 @@ Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
 
   const MatrixXd rows = Dequantize(code), basis = rows.rightCols(code.components);
   NeighbourPrediction prediction(connectivity.triangles, connectivity.vertices, code.components);
-  clip.triangles = connectivity.triangles;
+  clip.mesh.triangles = connectivity.triangles;
   clip.frames.assign(code.frames, Positions(connectivity.vertices));
   VectorXd coefficients(code.components);
   for (std::size_t i = 0; i < connectivity.vertices; ++i) {

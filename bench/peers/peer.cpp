@@ -40,10 +40,10 @@ bool ParseArguments(std::vector<std::string> words, Arguments& a) {
   return false;
 }
 
-Status ReadClip(const Arguments& arguments, PeerClip& clip) {
+Status ReadClip(const Arguments& arguments, Clip& clip) {
   std::unique_ptr<ClipInput> input;
   SAC_RETURN_IF_ERROR(ClipInput::Open({arguments.mesh, arguments.clip}, input));
-  clip.triangles = input->mesh().triangles;
+  clip.mesh.triangles = input->mesh().triangles;
   for (bool end = false;;) {
     Positions frame;
     SAC_RETURN_IF_ERROR(input->Next(frame, end));
@@ -71,7 +71,7 @@ Status WriteBytes(const std::string& path, const void* bytes, std::size_t size) 
 }
 
 Status Encode(const Arguments& arguments, const Peer& peer) {
-  PeerClip clip;
+  Clip clip;
   SAC_RETURN_IF_ERROR(ReadClip(arguments, clip));
   PeerStream stream;
   SAC_RETURN_IF_ERROR(peer.encode(clip, arguments.setting, stream));
@@ -87,7 +87,7 @@ Status Encode(const Arguments& arguments, const Peer& peer) {
 Status Decode(const Arguments& arguments, const Peer& peer) {
   std::vector<std::uint8_t> bytes, map;
   SAC_RETURN_IF_ERROR(ReadBytes(arguments.stream, bytes));
-  PeerClip clip;
+  Clip clip;
   SAC_RETURN_IF_ERROR(peer.decode(bytes, clip));
   SAC_RETURN_IF_ERROR(ReadBytes(arguments.map, map));
   std::vector<std::uint32_t> order(map.size() / sizeof(std::uint32_t));

@@ -6,18 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "sac/mesh.h"
+#include "sac/clip.h"
 #include "sac/status.h"
 
 namespace sac::bench {
-
-// A clip as a whole, as most peers need it.
-struct PeerClip {
-  std::vector<Triangle> triangles;
-  std::vector<Positions> frames;  // at least one, all of the same number of vertices
-
-  std::size_t vertices() const { return frames.front().size(); }
-};
 
 // What an encoder makes of it. All that the decoder gets is `bytes`.
 struct PeerStream {
@@ -26,13 +18,14 @@ struct PeerStream {
   std::vector<std::uint32_t> order;
 };
 
-// Another codec, as a program for `sac sweep --peers` (cli/sweep/sweep_codec.h says how it is called).
+// Another codec, as a program for `sac sweep --peers` (bench/sweep/sweep_codec.h says how it is called).
 struct Peer {
   std::string title, version;
   std::string parameter;              // what a setting is, in a word or two; may be empty
   std::vector<std::string> settings;  // from small to near
-  std::function<Status(const PeerClip& clip, const std::string& setting, PeerStream& stream)> encode;
-  std::function<Status(std::span<const std::uint8_t> bytes, PeerClip& clip)> decode;
+  // A clip has at least one frame; its triangles and frames are all that is coded.
+  std::function<Status(const Clip& clip, const std::string& setting, PeerStream& stream)> encode;
+  std::function<Status(std::span<const std::uint8_t> bytes, Clip& clip)> decode;
   std::string missing = {};  // why it cannot be run; empty when it can
   // What was measured of the work done, as JSON for --report; most peers have none.
   std::function<std::string()> report = {};

@@ -164,7 +164,7 @@ RangeDecoder ReadCode(ByteReader& in) {
   return RangeDecoder(in.Bytes(size));
 }
 
-Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stream, Report& report) {
+Status Encode(const Clip& clip, const std::string& setting, PeerStream& stream, Report& report) {
   Settings settings;
   if (!Parse(setting, settings))
     return Status::InvalidArgument(setting + ": not BASES/BITS[/no-polar][/no-arithmetic]");
@@ -254,7 +254,7 @@ Positions PositionsOf(const PositionMatrix& matrix) {
   return out;
 }
 
-Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip, Report& report) {
+Status Decode(std::span<const std::uint8_t> bytes, Clip& clip, Report& report) {
   StepClock& clock = report.clock;
   clock.Lap("reading");
   ByteReader in(bytes);
@@ -314,7 +314,7 @@ Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip, Report& repor
     clip.frames.push_back(PositionsOf(positions));
     clock.Lap("writing");
   }
-  clip.triangles = first.triangles;
+  clip.mesh.triangles = first.triangles;
   return Status::Ok();
 }
 
@@ -329,10 +329,10 @@ int main(int argc, char** argv) {
                   "re-implemented",
                   "bases/bits",
                   {"25/18", "50/18", "100/18", "200/18", "400/18"},
-                  [&](const PeerClip& clip, const std::string& setting, PeerStream& stream) {
+                  [&](const sac::Clip& clip, const std::string& setting, PeerStream& stream) {
                     return Encode(clip, setting, stream, report);
                   },
-                  [&](std::span<const std::uint8_t> bytes, PeerClip& clip) { return Decode(bytes, clip, report); },
+                  [&](std::span<const std::uint8_t> bytes, sac::Clip& clip) { return Decode(bytes, clip, report); },
                   "",
                   [&] { return report.Text(); }});
 }

@@ -9,14 +9,14 @@
 namespace sac::bench {
 namespace {
 
-Status Encode(const PeerClip& clip, const std::string& setting, PeerStream& stream) {
+Status Encode(const Clip& clip, const std::string& setting, PeerStream& stream) {
   double level = 0;
   if (!ParseNumber(setting, level)) return Status::InvalidArgument(setting + ": not a level");
   ByteWriter raw;
-  raw.U32(static_cast<std::uint32_t>(clip.triangles.size()));
+  raw.U32(static_cast<std::uint32_t>(clip.mesh.triangles.size()));
   raw.U32(static_cast<std::uint32_t>(clip.vertices()));
   raw.U32(static_cast<std::uint32_t>(clip.frames.size()));
-  for (const Triangle& t : clip.triangles) {
+  for (const Triangle& t : clip.mesh.triangles) {
     for (const std::uint32_t v : t) raw.U32(v);
   }
   for (const Positions& frame : clip.frames) {
@@ -52,13 +52,13 @@ Status Decompress(std::span<const std::uint8_t> bytes, std::vector<std::uint8_t>
   return result == LZMA_STREAM_END ? Status::Ok() : Status::Corrupt("xz: error " + std::to_string(result));
 }
 
-Status Decode(std::span<const std::uint8_t> bytes, PeerClip& clip) {
+Status Decode(std::span<const std::uint8_t> bytes, Clip& clip) {
   std::vector<std::uint8_t> raw;
   SAC_RETURN_IF_ERROR(Decompress(bytes, raw));
   ByteReader in(raw);
-  clip.triangles.resize(in.U32());
+  clip.mesh.triangles.resize(in.U32());
   const std::uint32_t vertices = in.U32(), frames = in.U32();
-  for (Triangle& t : clip.triangles) {
+  for (Triangle& t : clip.mesh.triangles) {
     for (std::uint32_t& v : t) v = in.U32();
   }
   clip.frames.assign(frames, Positions(vertices));

@@ -56,7 +56,7 @@ Status PrepareClip(const std::vector<std::string>& inputs, const std::string& di
   SAC_RETURN_IF_ERROR(ClipInput::Open(inputs, input));
   const Mesh mesh = GeometryOf(input->mesh());
   clip.name = NameOf(inputs.front());
-  clip.frames = input->frame_count();
+  clip.frames = *input->frame_count();
   clip.vertices = mesh.positions.size();
   clip.triangles = mesh.triangles.size();
   clip.diagonal = BoundingBox(mesh.positions).diagonal();

@@ -4,6 +4,7 @@
 #include <exception>
 #include <string>
 
+#include "codec/c_status.h"
 #include "sac/decoder.h"
 #include "sac/sac.h"
 #include "sac/version.h"
@@ -15,27 +16,8 @@ struct sac_decoder {
 
 namespace {
 
+using sac::CodeOf;
 using sac::Status;
-using sac::StatusCode;
-
-sac_status CodeOf(const Status& status) {
-  switch (status.code()) {
-    case StatusCode::kOk:
-      return SAC_OK;
-    case StatusCode::kNeedMoreData:
-      return SAC_NEED_MORE_DATA;
-    case StatusCode::kUnsupported:
-      return SAC_UNSUPPORTED;
-    case StatusCode::kCorrupt:
-      return SAC_CORRUPT;
-    case StatusCode::kLimit:
-      return SAC_LIMIT;
-    case StatusCode::kInvalidArgument:
-    case StatusCode::kIoError:
-      return SAC_INVALID_ARGUMENT;
-  }
-  return SAC_INVALID_ARGUMENT;
-}
 
 // Nothing is thrown across the border.
 template <class Step>
@@ -111,6 +93,7 @@ const char* sac_version(void) { return SAC_VERSION_STRING; }
 const char* sac_stream_version(void) { return SAC_STREAM_VERSION_STRING; }
 
 void sac_settings_init(sac_settings* settings) {
+  if (settings == nullptr) return;
   const sac::DecoderSettings defaults;
   *settings = {};
   settings->struct_size = sizeof(sac_settings);

@@ -4,8 +4,10 @@
 #include <cmath>
 #include <cstdlib>
 #include <limits>
+#include <new>
 #include <optional>
 #include <sstream>
+#include <stdexcept>
 #include <string>
 #include <utility>
 
@@ -128,6 +130,18 @@ std::vector<std::uint32_t> ShareHarmonics(const DecodedMesh& mesh, std::uint32_t
   return counts;
 }
 
+// Keeps exceptions in, all of which mean that memory is short: the limits of the settings allow more than there is.
+template <class Call>
+Status Contain(Call&& call) {
+  try {
+    return call();
+  } catch (const std::bad_alloc&) {
+    return Status::Limit("out of memory");
+  } catch (const std::length_error&) {
+    return Status::Limit("out of memory");
+  }
+}
+
 }  // namespace
 
 class Encoder::Impl {
@@ -137,6 +151,24 @@ class Encoder::Impl {
   Status Send(std::span<const Vec3f> positions);
   Status Finish();
 
+  // Keeps a failure after which nothing can be coded.
+  Status Latch(Status status) {
+    if (!status.ok()) failure_ = status;
+    return status;
+  }
+
+  // An exception leaves half a frame or half a group behind.
+  template <class Step>
+  Status Call(Step&& step) {
+    bool done = false;
+    const Status status = Contain([&] {
+      const Status of_step = step();
+      done = true;
+      return of_step;
+    });
+    return done ? status : Latch(status);
+  }
+
   std::optional<StreamWriter> writer;
   std::vector<std::uint32_t> order;
   SequenceHeader header;
@@ -144,6 +176,10 @@ class Encoder::Impl {
 
  private:
   bool IsFull(std::uint32_t frames) const;
+  // Tells the caller how many frames are coded; kCancelled when it wants no more.
+  Status Progress(std::uint32_t frames) const {
+    return settings_.progress && !settings_.progress(frames) ? Status::Cancelled() : Status::Ok();
+  }
   Status FlushGroup();
   // Low delay.
   Status SendNow(PositionMatrix positions);
@@ -158,7 +194,7 @@ class Encoder::Impl {
   // The open group, with low delay.
   std::optional<FrameCoder<RangeEncoder>> coder_;
   std::uint32_t open_frames_ = 0;
-  Status failure_;  // half a frame has been coded
+  Status failure_;  // half a frame or half a group has been coded
 };
 
 Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings, double share) {
@@ -166,6 +202,7 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings, 
   SAC_RETURN_IF_ERROR(CheckMesh(first, settings.limits));
   SAC_RETURN_IF_ERROR(CheckFinite(first.positions));
   settings_ = settings;
+  SAC_RETURN_IF_ERROR(Progress(0));
   const double rms = RmsRadius(first.positions);
   QualitySettings defaults = SettingsOfQuality(
       settings.quality,
@@ -210,6 +247,7 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings, 
   if (const Status status = ParseSequenceHeader(WriteSequenceHeader(header), settings.limits, parsed); !status.ok()) {
     return Status::InvalidArgument(status.message());  // such as a step that no float can hold
   }
+  SAC_RETURN_IF_ERROR(Progress(0));
   syntax.samples_per_harmonic = settings.samples_per_harmonic;
   if (settings.keep_order) syntax.order = order;
   const Limits limits = LimitsOfIFrame(settings.limits, WriteIFrame(syntax, header).size());
@@ -242,9 +280,9 @@ Status Encoder::Impl::Send(std::span<const Vec3f> positions) {
     ordered.row(static_cast<Eigen::Index>(v)) << static_cast<double>(p[0]), static_cast<double>(p[1]),
         static_cast<double>(p[2]);
   }
-  if (settings_.low_delay) return failure_ = SendNow(std::move(ordered));
+  if (settings_.low_delay) return Latch(SendNow(std::move(ordered)));
   group_.push_back(std::move(ordered));
-  return IsFull(static_cast<std::uint32_t>(group_.size())) ? FlushGroup() : Status::Ok();
+  return IsFull(static_cast<std::uint32_t>(group_.size())) ? Latch(FlushGroup()) : Status::Ok();
 }
 
 // A group is no longer than any decoder takes by default.
@@ -267,7 +305,7 @@ Status Encoder::Impl::SendNow(PositionMatrix positions) {
   }
   writer->Frame(range.Finish(), bits);
   if (IsFull(++open_frames_)) EndOpenGroup();
-  return Status::Ok();
+  return Progress(writer->frames());
 }
 
 void Encoder::Impl::EndOpenGroup() {
@@ -283,7 +321,9 @@ Status Encoder::Impl::FlushGroup() {
   RangeEncoder range;
   FrameCoder<RangeEncoder> coder(header, shape_.layouts);
   FrameBits bits;
-  SAC_RETURN_IF_ERROR(encoder_->Encode(group_, structure, coded));
+  const std::uint32_t before = writer->frames();
+  const auto frame_done = [&](std::uint32_t count) { return Progress(before + count); };
+  SAC_RETURN_IF_ERROR(encoder_->Encode(group_, structure, frame_done, coded));
   for (std::size_t i = 0; i < coded.size(); ++i) {
     if (!coder.Code(range, structure[i], coded[i], &bits)) {
       return Status::InvalidArgument("the motion is too far from the first frame for these steps");
@@ -299,7 +339,7 @@ Status Encoder::Impl::Finish() {
   if (finished_) return Status::InvalidArgument("the stream is finished");
   SAC_RETURN_IF_ERROR(failure_);
   EndOpenGroup();
-  if (!group_.empty()) SAC_RETURN_IF_ERROR(FlushGroup());
+  if (!group_.empty()) SAC_RETURN_IF_ERROR(Latch(FlushGroup()));
   writer->End();
   finished_ = true;
   return Status::Ok();
@@ -312,15 +352,22 @@ Status Encoder::Create(const Mesh& first_frame, const EncoderSettings& settings,
   // A small I-frame of a large mesh may not ask for as many harmonics as its quality would.
   constexpr double kFewer = 0.9, kFewest = 0.1;
   for (double share = 1;; share *= kFewer) {
-    auto impl = std::make_unique<Impl>();
-    const Status status = impl->Start(first_frame, settings, share);
-    if (status.ok()) encoder.reset(new Encoder(std::move(impl)));
+    const Status status = Contain([&] {
+      auto impl = std::make_unique<Impl>();
+      SAC_RETURN_IF_ERROR(impl->Start(first_frame, settings, share));
+      encoder.reset(new Encoder(std::move(impl)));
+      return Status::Ok();
+    });
     if (status.code() != StatusCode::kLimit || settings.harmonics || share < kFewest) return status;
   }
 }
 
-Status Encoder::Send(std::span<const Vec3f> positions) { return impl_->Send(positions); }
-Status Encoder::Finish() { return impl_->Finish(); }
+Status Encoder::Send(std::span<const Vec3f> positions) {
+  return impl_->Call([&] { return impl_->Send(positions); });
+}
+Status Encoder::Finish() {
+  return impl_->Call([&] { return impl_->Finish(); });
+}
 std::vector<std::uint8_t> Encoder::TakeBytes() { return impl_->writer->TakeBytes(); }
 const std::vector<std::uint32_t>& Encoder::order() const { return impl_->order; }
 const StreamInfo& Encoder::info() const { return impl_->info; }

@@ -131,7 +131,7 @@ RigidMotion GroupEncoder::ChooseRigid(const RigidTarget& target, const FrameSlot
 }
 
 Status GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
-                            std::vector<FrameSyntax>& coded) {
+                            const std::function<Status(std::uint32_t)>& frame_done, std::vector<FrameSyntax>& coded) {
   // 1. By time, because rotations are unwrapped in time: rigid motions, then, against the one reference shape, fields.
   const std::vector<RigidMotion> rigid = ChooseRigid(frames, structure);
   std::vector<Eigen::MatrixXd> motion_targets(frames.size());
@@ -147,6 +147,7 @@ Status GroupEncoder::Encode(const std::vector<PositionMatrix>& frames, const std
   for (const FrameSlot& slot : structure) {
     SAC_RETURN_IF_ERROR(EncodeSlot(frames, structure, rigid[slot.display], std::move(motion_targets[slot.display]),
                                    predictor, coded.emplace_back()));
+    SAC_RETURN_IF_ERROR(frame_done(static_cast<std::uint32_t>(coded.size())));
   }
   last_positions_ = frames.back();
   for (std::size_t i = 0; i < structure.size(); ++i) {

@@ -3,6 +3,7 @@
 #include <Eigen/Core>
 #include <array>
 #include <cstdint>
+#include <functional>
 #include <optional>
 #include <vector>
 
@@ -29,8 +30,9 @@ class GroupEncoder {
   // `frames`: by time, in decoded vertex order, model units. `structure`: of the same number of frames. Appends the
   // frames in coding order. kInvalidArgument when a value leaves the range of the format, a reference shape cannot be
   // factorized or the bound cannot be held.
+  // `frame_done` gets the number of frames of the group that are coded; its failure ends the encoding.
   Status Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
-                std::vector<FrameSyntax>& coded);
+                const std::function<Status(std::uint32_t)>& frame_done, std::vector<FrameSyntax>& coded);
 
   // The same for a chain of P-frames whose next is not known yet. Index 0 begins a group. After an error the group
   // cannot go on.

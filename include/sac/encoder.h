@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -35,6 +36,9 @@ struct EncoderSettings {
   bool index = true;        // end streams of several groups with where they begin
   // Header and I-frame come again before every so many groups, for those who join in the middle; 0: never.
   std::uint32_t repeat_start = 0;
+  // Is called on the caller's thread between the steps of Create(), with 0, and with the number of frames coded after
+  // each frame. Returns whether to go on; after false the encoder answers kCancelled and cannot go on.
+  std::function<bool(std::uint32_t frames)> progress;
   // What the decoders it is for are ready to spend. A quality gets fewer harmonics when these would be too many;
   // what exceeds them otherwise is refused, kLimit.
   Limits limits;

@@ -39,7 +39,8 @@ typedef enum sac_status {
   SAC_INVALID_ARGUMENT = 2, /* what the caller gave cannot be used */
   SAC_UNSUPPORTED = 3,      /* a stream of another version, or what a stream cannot give */
   SAC_CORRUPT = 4,          /* the bytes break a rule of spec.md */
-  SAC_LIMIT = 5             /* a limit of the settings, or of memory */
+  SAC_LIMIT = 5,            /* a limit of the settings, or of memory */
+  SAC_CANCELLED = 6         /* the progress callback asked to stop */
 } sac_status;
 
 /* Set it with sac_settings_init(), then change what is to be different. */

@@ -13,6 +13,7 @@ enum class StatusCode {
   kCorrupt,          // the bytes break a rule of spec.md
   kLimit,            // a limit of the settings would be exceeded
   kIoError,          // a file could not be read or written
+  kCancelled,        // the caller's progress callback asked to stop
 };
 
 // The outcome of an operation; the message is one line for a person, empty when ok.
@@ -31,6 +32,7 @@ class [[nodiscard]] Status {
   static Status Unsupported(std::string m) { return {StatusCode::kUnsupported, std::move(m)}; }
   static Status Corrupt(std::string m) { return {StatusCode::kCorrupt, std::move(m)}; }
   static Status Limit(std::string m) { return {StatusCode::kLimit, std::move(m)}; }
+  static Status Cancelled() { return {StatusCode::kCancelled, "cancelled"}; }
   static Status IoError(std::string m) { return {StatusCode::kIoError, std::move(m)}; }
 
  private:

@@ -62,7 +62,7 @@ TEST_F(ClipInputTest, CacheGivesPositionsAndMeshTheRest) {
   ASSERT_TRUE(ClipInput::Open({obj, mdd}, input).ok());
   EXPECT_EQ(input->mesh().positions[0][0], 1);
   EXPECT_EQ(input->mesh().uvs.size(), 1U);
-  EXPECT_EQ(input->fps(), 25);
+  EXPECT_EQ(input->rate().per_second(), 25);
   EXPECT_EQ(input->frame_count(), 2U);
   for (int pass = 0; pass < 2; ++pass) {
     Positions frame;
@@ -74,7 +74,7 @@ TEST_F(ClipInputTest, CacheGivesPositionsAndMeshTheRest) {
     }
     ASSERT_TRUE(input->Next(frame, end).ok());
     EXPECT_TRUE(end);
-    input->Rewind();
+    EXPECT_TRUE(input->Rewind().ok());
   }
 }
 

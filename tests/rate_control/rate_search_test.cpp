@@ -10,18 +10,11 @@
 namespace sac {
 namespace {
 
-// A synthetic clip that can be read again.
+// A synthetic clip, its encodings and searches.
 class SynthSource {
  public:
   SynthSource(SynthKind kind, std::uint32_t vertices, std::uint32_t frames) {
     EXPECT_TRUE(SynthClip::Create({kind, vertices, frames, 1}, clip_).ok());
-    source_.mesh = &clip_.mesh();
-    source_.rewind = [this] { next_ = 0; };
-    source_.next = [this](Positions& frame, bool& end) {
-      end = next_ == clip_.frames();
-      if (!end) frame = clip_.Frame(next_++);
-      return Status::Ok();
-    };
   }
 
   // 0 harmonics: as many as the search likes.
@@ -32,16 +25,14 @@ class SynthSource {
     trials = 0;
     const auto run = [this](Trial& trial) {
       ++trials;
-      return RunTrial(
-          source_, [](std::uint32_t) {}, trial);
+      return RunTrial(clip_, trial);
     };
     return SearchTargets(targets, base, static_cast<std::uint32_t>(clip_.mesh().positions.size()), run, best);
   }
   Trial Run(const EncoderSettings& settings) {
     Trial trial;
     trial.settings = settings;
-    const Status status = RunTrial(
-        source_, [](std::uint32_t) {}, trial);
+    const Status status = RunTrial(clip_, trial);
     EXPECT_TRUE(status.ok()) << status.message();
     return trial;
   }
@@ -50,8 +41,6 @@ class SynthSource {
 
  private:
   SynthClip clip_;
-  ClipSource source_;
-  std::uint32_t next_ = 0;
 };
 
 void ExpectReached(double figure, double target) {

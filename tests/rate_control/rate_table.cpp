@@ -34,19 +34,9 @@ std::vector<Wanted> Table() {
 
 Status Measure(SynthClip& clip, const std::string& clip_name, const std::string& settings_name,
                const EncoderSettings& settings, std::vector<RateRow>& rows) {
-  std::uint32_t next = 0;
-  ClipSource source;
-  source.mesh = &clip.mesh();
-  source.rewind = [&] { next = 0; };
-  source.next = [&](Positions& frame, bool& end) {
-    end = next == clip.frames();
-    if (!end) frame = clip.Frame(next++);
-    return Status::Ok();
-  };
   Trial trial;
   trial.settings = settings;
-  SAC_RETURN_IF_ERROR(RunTrial(
-      source, [](std::uint32_t) {}, trial));
+  SAC_RETURN_IF_ERROR(RunTrial(clip, trial));
   rows.push_back({clip_name + "," + settings_name, trial.bytes, trial.kg, trial.sted});
   return Status::Ok();
 }

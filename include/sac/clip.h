@@ -1,0 +1,75 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "sac/mesh.h"
+#include "sac/status.h"
+
+namespace sac {
+
+// Frames per second, numerator / denominator in lowest terms; a numerator of 0 means unknown.
+struct FrameRate {
+  std::uint32_t numerator = 0;
+  std::uint32_t denominator = 1;
+
+  // 0 where the rate is unknown.
+  double per_second() const { return static_cast<double>(numerator) / static_cast<double>(denominator); }
+};
+
+// A clip that is read frame by frame, as often as is wanted. Memory need not grow with the number of frames.
+class ClipReader {
+ public:
+  virtual ~ClipReader() = default;
+
+  // The first frame with its triangles and attributes.
+  virtual const Mesh& mesh() const = 0;
+  virtual FrameRate rate() const { return {}; }
+  // The number of frames, where it is known before they are read.
+  virtual std::optional<std::uint32_t> frame_count() const { return std::nullopt; }
+  // The beginning of messages about the clip as a whole, such as the path of its file.
+  virtual std::string name() const { return {}; }
+
+  // Reads the next frame, beginning with the first, in the vertex order of mesh(), model units. After the last frame
+  // `end` becomes true and `frame` stays as it is. A message names the file and the frame at fault.
+  virtual Status Next(Positions& frame, bool& end) = 0;
+  // Begins again with the first frame.
+  virtual Status Rewind() = 0;
+};
+
+// A clip in memory.
+struct Clip {
+  Mesh mesh;                      // the first frame with its triangles and attributes
+  std::vector<Positions> frames;  // each with as many positions as the mesh
+  FrameRate rate = {};
+
+  std::size_t vertices() const { return frames.empty() ? mesh.positions.size() : frames.front().size(); }
+};
+
+// Reads a clip in memory, which must outlive the reader.
+class MemoryClipReader : public ClipReader {
+ public:
+  explicit MemoryClipReader(const Clip& clip) : clip_(clip) {}
+
+  const Mesh& mesh() const override { return clip_.mesh; }
+  FrameRate rate() const override { return clip_.rate; }
+  std::optional<std::uint32_t> frame_count() const override { return static_cast<std::uint32_t>(clip_.frames.size()); }
+  Status Next(Positions& frame, bool& end) override {
+    end = next_ == clip_.frames.size();
+    if (!end) frame = clip_.frames[next_++];
+    return Status::Ok();
+  }
+  Status Rewind() override {
+    next_ = 0;
+    return Status::Ok();
+  }
+
+ private:
+  const Clip& clip_;
+  std::size_t next_ = 0;
+};
+
+}  // namespace sac

@@ -1,0 +1,160 @@
+/* The encoder of sac streams for C, and for what speaks C. encoder.h and clip_encoder.h are the same for C++.
+ *
+ *   sac_encoder_settings settings;
+ *   sac_encoder_settings_init(&settings);
+ *   sac_encoder* encoder;
+ *   if (sac_encoder_open(&encoder, &mesh, &settings) != SAC_OK) goto failed;
+ *   for (each frame, the first one too) {
+ *     if (sac_encoder_send(encoder, positions, 0) != SAC_OK) goto failed;
+ *     sac_encoder_take(encoder, &data, &size);                  // in order, a group at a time
+ *     write(data, size);
+ *   }
+ *   if (sac_encoder_finish(encoder) != SAC_OK) goto failed;
+ *   sac_encoder_take(encoder, &data, &size);
+ *   write(data, size);
+ *   failed: puts(sac_encoder_message(encoder));
+ *   sac_encoder_close(encoder);
+ *
+ * sac_encode_clip() is for clips that can be read more than once: it searches settings for a size or an error and
+ * measures what decoders will show.
+ *
+ * An encoder is used by one thread at a time; encoders share nothing. What the caller gives is read during the call
+ * alone. Pointers that an encoder gives out are its own: bytes and messages stay valid until the next call, the rest
+ * until the encoder is closed. No function throws or ends the program. Structs stay as they are but
+ * sac_encoder_settings, which knows its size. */
+#ifndef SAC_ENCODE_H
+#define SAC_ENCODE_H
+
+#include "sac.h"
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/* Called on the caller's thread between frames. `trial` is the number of the trial encoding of a search, from 1, and 0
+ * in the encoding whose bytes are given out; `frames` of it are coded. Anything but 0 ends in SAC_CANCELLED. */
+typedef int (*sac_progress)(void* user, uint32_t trial, uint32_t frames);
+
+/* Set it with sac_encoder_settings_init(), then change what is to be different. Doubles that are NaN, and harmonics 0,
+ * are chosen by the quality. */
+typedef struct sac_encoder_settings {
+  uint32_t struct_size;     /* of this struct, set by sac_encoder_settings_init(): later versions may add members */
+  double quality;           /* 0 (smallest) to 100 (nearest to the input) */
+  double max_error;         /* of any vertex in any frame, model units; NaN: no bound */
+  double target_kg;         /* percent; NaN: none. The targets are for sac_encode_clip() alone */
+  double target_sted;       /* NaN: none */
+  double target_bpvf;       /* bits a vertex and frame; NaN: none */
+  double motion_step;       /* radians and strain */
+  double displacement_step; /* fraction of the first frame's RMS radius */
+  double detail_step;       /* fraction of the first frame's RMS radius; 0: no detail plane */
+  double position_bits;     /* of the first frame: log2 of its extent in steps, 1 to 24 */
+  double level_growth;      /* of the steps from level to level of a pyramid, 1 to 2 */
+  uint32_t harmonics;       /* over all components */
+  uint32_t samples_per_harmonic;   /* of the reduced basis, at most 64; 0: exact harmonics */
+  uint32_t group;                  /* frames between points of random access */
+  uint32_t pyramid;                /* frames of a hierarchy of B-frames; 1: P-frames only */
+  uint32_t low_delay;              /* 1: P-frames only, each coded as it is sent */
+  uint32_t reference_previous;     /* 1: motion is measured against the frame before instead of the first */
+  uint32_t frame_rate_numerator;   /* frames per second; 0: unknown */
+  uint32_t frame_rate_denominator; /* not 0 */
+  uint32_t keep_order;             /* 1: the order of the vertices is in the stream */
+  uint32_t index;                  /* 1: streams of several groups end with an index */
+  uint32_t repeat_start;           /* header and first frame come again before every that many groups; 0: never */
+  uint32_t unmeasured;             /* 1: sac_encode_clip() neither decodes nor measures, unless there are targets */
+  uint64_t max_memory;             /* bytes that the decoders it is for may hold (spec.md 9) */
+  sac_progress progress;           /* null: none */
+  void* user;                      /* given to `progress` */
+} sac_encoder_settings;
+
+/* A first frame. Pointers that may be null are null where the mesh has no such attribute. */
+typedef struct sac_input_mesh {
+  uint32_t vertices;
+  uint32_t triangles;
+  uint32_t uvs;
+  const float* positions;            /* 3 a vertex, model units */
+  size_t position_stride;            /* bytes from vertex to vertex; 0: 12 */
+  const uint32_t* triangle_vertices; /* 3 a triangle */
+  const float* uv_values;            /* 2 a texture coordinate; may be null */
+  const uint32_t* triangle_uvs;      /* 3 a triangle: indices of texture coordinates; may be null */
+  const float* normals;              /* 3 a vertex; may be null */
+  const uint8_t* colors;             /* red, green, blue, alpha of a vertex; may be null */
+} sac_input_mesh;
+
+/* The bytes of a stream by what they say; they add up to its size. */
+typedef struct sac_stream_bytes {
+  double header;  /* magic, sequence header, end and index */
+  double i_frame; /* connectivity, positions and attributes of the first frame */
+  double motion;
+  double displacement;
+  double detail;
+  double correction;
+  double side; /* rigid motion, frame types, packet framing of groups */
+} sac_stream_bytes;
+
+typedef struct sac_encoder sac_encoder;
+
+/* Does nothing to a null pointer. */
+SAC_API void sac_encoder_settings_init(sac_encoder_settings* settings);
+
+/* Codes the first frame and computes the harmonics, which may take seconds for a large mesh. Null `settings` are those
+ * of sac_encoder_settings_init(). After an error *encoder is there only to give its message and be closed; it is null
+ * when memory is too short even for that. SAC_INVALID_ARGUMENT for settings out of range and a mesh that cannot be
+ * coded; SAC_UNSUPPORTED for settings of a later library; SAC_LIMIT where decoders would refuse the stream or memory is
+ * short; SAC_CANCELLED. */
+SAC_API sac_status sac_encoder_open(sac_encoder** encoder, const sac_input_mesh* mesh,
+                                    const sac_encoder_settings* settings);
+/* Null is allowed. */
+SAC_API void sac_encoder_close(sac_encoder* encoder);
+
+/* The next frame, the mesh's own first: 3 floats a vertex in the order of the mesh, `stride` bytes from vertex to
+ * vertex, 0 for 12. SAC_INVALID_ARGUMENT for a coordinate that is not finite, and the encoder goes on with another
+ * frame; after other errors it cannot go on. */
+SAC_API sac_status sac_encoder_send(sac_encoder* encoder, const float* positions, size_t stride);
+/* Ends the stream. */
+SAC_API sac_status sac_encoder_finish(sac_encoder* encoder);
+/* The bytes that have been coded since the last call, *size of them, which may be 0. */
+SAC_API sac_status sac_encoder_take(sac_encoder* encoder, const uint8_t** data, size_t* size);
+
+/* Per decoded vertex its index in the mesh. */
+SAC_API sac_status sac_encoder_order(const sac_encoder* encoder, const uint32_t** order);
+SAC_API sac_status sac_encoder_stream_bytes(const sac_encoder* encoder, sac_stream_bytes* bytes);
+
+/* The complaint of the last call that failed, one line; empty when none has. */
+SAC_API const char* sac_encoder_message(const sac_encoder* encoder);
+
+/* Reads a clip, as often as a search needs. Functions return 0, or anything else to end the encoding. */
+typedef struct sac_frame_source {
+  void* user;
+  /* Writes the next frame, the first one first, 3 floats a vertex; sets *end instead after the last. */
+  int (*next)(void* user, float* positions, int* end);
+  /* Begins again with the first frame. */
+  int (*rewind)(void* user);
+} sac_frame_source;
+
+/* Gets the bytes of a stream in order. Returns 0, or anything else to end the encoding. */
+typedef int (*sac_byte_sink)(void* user, const uint8_t* data, size_t size);
+
+/* What sac_encode_clip() came to. */
+typedef struct sac_clip_result {
+  uint64_t bytes;
+  uint32_t frames;
+  uint32_t trials; /* encodings that a search has made */
+  double bpvf;     /* bits a vertex and frame */
+  double kg;       /* percent */
+  double sted;
+  double max_error; /* model units */
+  sac_stream_bytes parts;
+  char message[256]; /* the complaint, one line, cut to fit; empty without an error */
+} sac_clip_result;
+
+/* Encodes a whole clip, searching settings where there are targets, and measures what a decoder makes of the stream.
+ * SAC_INVALID_ARGUMENT also where `source` or `sink` ended the encoding, and for targets that cannot be met. */
+SAC_API sac_status sac_encode_clip(const sac_input_mesh* mesh, const sac_frame_source* source,
+                                   const sac_encoder_settings* settings, sac_byte_sink sink, void* sink_user,
+                                   sac_clip_result* result);
+
+#ifdef __cplusplus
+}
+#endif
+
+#endif

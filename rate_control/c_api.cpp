@@ -1,0 +1,96 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdint>
+#include <cstring>
+#include <exception>
+#include <optional>
+#include <string>
+
+#include "codec/c_status.h"
+#include "codec/encode/c_input.h"
+#include "sac/clip_encoder.h"
+#include "sac/sac_encode.h"
+
+namespace sac {
+namespace {
+
+// A clip that a caller's functions read.
+class SourceReader : public ClipReader {
+ public:
+  SourceReader(Mesh mesh, const sac_frame_source& source) : mesh_(std::move(mesh)), source_(source) {}
+
+  const Mesh& mesh() const override { return mesh_; }
+  Status Next(Positions& frame, bool& end) override {
+    int ended = 0;
+    frame_.resize(mesh_.positions.size());
+    float none[3];
+    float* const positions = frame_.empty() ? none : frame_.data()->data();
+    if (source_.next(source_.user, positions, &ended) != 0) return Status::InvalidArgument("the source ended it");
+    end = ended != 0;
+    if (!end) frame = frame_;
+    return Status::Ok();
+  }
+  Status Rewind() override {
+    return source_.rewind(source_.user) == 0 ? Status::Ok() : Status::InvalidArgument("the source cannot be rewound");
+  }
+
+ private:
+  Mesh mesh_;
+  Positions frame_;
+  const sac_frame_source source_;
+};
+
+std::optional<double> Given(double value) { return std::isnan(value) ? std::nullopt : std::optional(value); }
+
+Status Encode(const sac_input_mesh* mesh, const sac_frame_source* source, const sac_encoder_settings* settings,
+              sac_byte_sink sink, void* sink_user, sac_clip_result& result) {
+  if (source == nullptr || source->next == nullptr || source->rewind == nullptr || sink == nullptr) {
+    return Status::InvalidArgument("a null pointer");
+  }
+  sac_encoder_settings s;
+  SAC_RETURN_IF_ERROR(ReadSettings(settings, s));
+  ClipEncoding encoding;
+  encoding.encoder = ToEncoderSettings(s);
+  encoding.targets = {Given(s.target_kg), Given(s.target_sted), Given(s.target_bpvf)};
+  encoding.measure = s.unmeasured == 0;
+  if (s.progress != nullptr) {
+    encoding.progress = [&s](const EncodingProgress& p) { return s.progress(s.user, p.trial, p.frames) == 0; };
+  }
+  Mesh first;
+  SAC_RETURN_IF_ERROR(ReadMesh(mesh, first));
+  SourceReader clip(std::move(first), *source);
+  const auto write = [&](std::span<const std::uint8_t> bytes) {
+    return sink(sink_user, bytes.data(), bytes.size()) == 0 ? Status::Ok()
+                                                            : Status::InvalidArgument("the sink ended it");
+  };
+  EncodedClip encoded;
+  SAC_RETURN_IF_ERROR(EncodeClip(clip, encoding, write, encoded));
+  result.bytes = encoded.bytes;
+  result.frames = encoded.frames;
+  result.trials = encoded.trials;
+  result.bpvf = encoded.frames > 0 ? encoded.bpvf() : 0;
+  result.kg = encoded.distortion.kg;
+  result.sted = encoded.distortion.sted;
+  result.max_error = encoded.distortion.max_error;
+  result.parts = ToStreamBytes(encoded.parts);
+  return Status::Ok();
+}
+
+}  // namespace
+}  // namespace sac
+
+sac_status sac_encode_clip(const sac_input_mesh* mesh, const sac_frame_source* source,
+                           const sac_encoder_settings* settings, sac_byte_sink sink, void* sink_user,
+                           sac_clip_result* result) {
+  sac_clip_result unused;
+  sac_clip_result& out = result != nullptr ? *result : unused;
+  out = {};
+  try {
+    const sac::Status status = sac::Encode(mesh, source, settings, sink, sink_user, out);
+    status.message().copy(out.message, sizeof(out.message) - 1);
+    return sac::CodeOf(status);
+  } catch (const std::exception&) {
+    std::strcpy(out.message, "out of memory");
+    return SAC_LIMIT;
+  }
+}
