@@ -26,7 +26,7 @@ struct PeerStream {
   std::vector<std::uint32_t> order;
 };
 
-// Another codec, as a program for `sac sweep --peers` (cli/sweep/sweep_codec.h says how it is called).
+// Another codec, as a program for `sac sweep --peers` (bench/sweep/sweep_codec.h says how it is called).
 struct Peer {
   std::string title, version;
   std::string parameter;              // what a setting is, in a word or two; may be empty
