@@ -1,6 +1,7 @@
 #include <cmath>
 #include <cstdint>
 #include <exception>
+#include <limits>
 #include <memory>
 #include <new>
 #include <string>
@@ -61,6 +62,24 @@ Status Open(const sac_input_mesh* mesh, const sac_encoder_settings* settings, sa
 }
 
 }  // namespace
+
+void sac_encoder_settings_init(sac_encoder_settings* settings) {
+  if (settings == nullptr) return;
+  constexpr double kChosen = std::numeric_limits<double>::quiet_NaN();
+  const sac::EncoderSettings defaults;
+  *settings = {};
+  settings->struct_size = sizeof(sac_encoder_settings);
+  settings->quality = defaults.quality;
+  settings->max_error = settings->target_kg = settings->target_sted = settings->target_bpvf = kChosen;
+  settings->motion_step = settings->displacement_step = settings->detail_step = settings->position_bits = kChosen;
+  settings->level_growth = defaults.level_growth;
+  settings->samples_per_harmonic = defaults.samples_per_harmonic;
+  settings->group = defaults.group;
+  settings->pyramid = defaults.pyramid;
+  settings->frame_rate_denominator = defaults.frame_rate_denominator;
+  settings->index = defaults.index ? 1 : 0;
+  settings->max_memory = defaults.limits.memory;
+}
 
 sac_status sac_encoder_open(sac_encoder** encoder, const sac_input_mesh* mesh, const sac_encoder_settings* settings) {
   if (encoder == nullptr) return SAC_INVALID_ARGUMENT;

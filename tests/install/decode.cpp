@@ -1,3 +1,4 @@
+// Counts the frames of the stream that is named.
 #include <sac/decoder.h>
 
 #include <cstdio>
