@@ -111,6 +111,7 @@ const char* sac_version(void) { return SAC_VERSION_STRING; }
 const char* sac_stream_version(void) { return SAC_STREAM_VERSION_STRING; }
 
 void sac_settings_init(sac_settings* settings) {
+  if (settings == nullptr) return;
   const sac::DecoderSettings defaults;
   *settings = {};
   settings->struct_size = sizeof(sac_settings);

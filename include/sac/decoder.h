@@ -95,8 +95,9 @@ class Decoder {
 
   // Decodes the next frame. kNeedMoreData when none is ready.
   Status Receive(DecodedFrame& frame);
-  // Likewise into the caller's memory, such as a mapped buffer of a GPU. kInvalidArgument, and the frame still waits,
-  // when a buffer is too small.
+  // Decodes the next frame into the caller's memory, such as a mapped buffer of a GPU. After the first frames
+  // of a stream nothing is allocated within a group, but for threads that are made. kNeedMoreData when no frame is
+  // ready; kInvalidArgument, and the frame still waits, when a buffer is too small.
   Status Receive(const FrameBuffers& buffers, FrameInfo& info);
 
   // Declares the end of the bytes: kCorrupt when the stream is not complete. With skip_damage, more frames may be ready
@@ -112,7 +113,8 @@ class Decoder {
   // kNeedMoreData before the I-frame has been sent; kInvalidArgument when the clip is known to end before. An error of
   // the stream's damage ends here.
   Status Seek(std::uint32_t frame, std::uint64_t& byte);
-  // Likewise to the frame that is shown at so many seconds. kInvalidArgument when the stream has no frame rate.
+  // Goes to the frame that is shown `seconds` after the clip's begin. kInvalidArgument when the stream has no frame
+  // rate, otherwise as Seek().
   Status SeekTime(double seconds, std::uint64_t& byte);
 
   // Makes Seek() know where all groups begin, from the last bytes of the stream. kNeedMoreData when there are too few:
@@ -129,8 +131,8 @@ class Decoder {
   Status Interpolate(double time, DecodedFrame& frame);
   Status Interpolate(double time, const FrameBuffers& buffers, FrameInfo& info);
 
-  // Forgets everything but the settings: another stream may begin.
-  void Reset();
+  // Forgets everything but the settings: another stream may begin. Needs no memory.
+  void Reset() noexcept;
 
   // What the stream says of itself, and the first frame's mesh with its static attributes; null before they have been
   // decoded.

@@ -113,6 +113,7 @@ typedef struct sac_decoder sac_decoder;
 SAC_API const char* sac_version(void);
 SAC_API const char* sac_stream_version(void);
 
+/* Sets all members to the defaults. Null is allowed and nothing happens. */
 SAC_API void sac_settings_init(sac_settings* settings);
 
 /* Null `settings` are those of sac_settings_init(). Else *decoder is null: SAC_INVALID_ARGUMENT when the settings
@@ -120,7 +121,7 @@ SAC_API void sac_settings_init(sac_settings* settings);
 SAC_API sac_status sac_decoder_open(sac_decoder** decoder, const sac_settings* settings);
 /* Null is allowed. */
 SAC_API void sac_decoder_close(sac_decoder* decoder);
-/* Forgets everything but the settings: another stream may begin. */
+/* Forgets everything but the settings: another stream may begin. Needs no memory. Null is allowed. */
 SAC_API void sac_decoder_reset(sac_decoder* decoder);
 
 /* Takes bytes from *data, at most until a packet is complete, and moves *data and *size on. Takes nothing while frames
