@@ -58,18 +58,18 @@ Status Missing() { return Status::InvalidArgument("a null pointer"); }
 template <class Settings, class Limits, class Visit>
 void VisitLimits(Settings& settings, Limits& limits, Visit&& visit) {
   visit(settings.max_vertices, limits.vertices);
-  visit(settings.max_triangles, limits.triangles);
-  visit(settings.max_harmonics, limits.harmonics);
-  visit(settings.max_frames_per_group, limits.frames_per_group);
-  visit(settings.max_packet_bytes, limits.packet_bytes);
-  visit(settings.max_group_values, limits.group_values);
-  visit(settings.max_basis_values, limits.basis_values);
-  visit(settings.max_factor_values, limits.factor_values);
   visit(settings.max_memory, limits.memory);
-  visit(settings.max_basis_work, limits.basis_work);
-  visit(settings.max_free_work, limits.free_work);
-  visit(settings.max_work_per_byte, limits.work_per_byte);
-  visit(settings.max_frame_work, limits.frame_work);
+  visit(settings.max_work, limits.work);
+  visit(settings.max_triangles, limits.expert.triangles);
+  visit(settings.max_harmonics, limits.expert.harmonics);
+  visit(settings.max_frames_per_group, limits.expert.frames_per_group);
+  visit(settings.max_packet_bytes, limits.expert.packet_bytes);
+  visit(settings.max_group_values, limits.expert.group_values);
+  visit(settings.max_basis_values, limits.expert.basis_values);
+  visit(settings.max_factor_values, limits.expert.factor_values);
+  visit(settings.max_free_work, limits.expert.free_work);
+  visit(settings.max_work_per_byte, limits.expert.work_per_byte);
+  visit(settings.max_frame_work, limits.expert.frame_work);
 }
 
 sac::VertexBuffer ToBuffer(const sac_vertex_buffer& b) {
@@ -94,8 +94,8 @@ void Describe(const sac::FrameInfo& from, sac_frame_info* to) {
   std::copy(from.box.high.begin(), from.box.high.end(), to->box_high);
 }
 
-// What sac_settings had in its first version.
-constexpr std::size_t kFirstSettings = offsetof(sac_settings, threads) + sizeof(sac_settings::threads);
+// The size of the sac_settings that this version began with.
+constexpr std::size_t kFirstSettings = offsetof(sac_settings, max_frame_work) + sizeof(sac_settings::max_frame_work);
 
 // Arrays of arrays are what C sees as one array.
 template <class Out, class In>

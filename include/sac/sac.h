@@ -45,8 +45,16 @@ typedef enum sac_status {
 /* Set it with sac_settings_init(), then change what is to be different. */
 typedef struct sac_settings {
   uint32_t struct_size; /* of this struct, set by sac_settings_init(): later versions may add members */
-  /* What a stream may ask for (spec.md 9); over it it is refused before anything is allocated. */
+  /* What a stream may ask for (spec.md 9); a stream that asks for more is refused before anything is allocated. */
   uint32_t max_vertices;
+  uint64_t max_memory; /* bytes of all that a decoder holds at a time, approximately */
+  double max_work;     /* multiplications for what is derived from the first frame, approximately */
+
+  uint32_t skip_damage; /* 1: go on after damage at the next sound group; 0: errors are final */
+  uint32_t frame_step;  /* sac_decoder_receive() gives the frames whose number is a multiple of this, not 0 */
+  uint32_t threads;     /* threads that reconstruct frames of a group, at most 1024 */
+
+  /* Expert limits, of single sizes, as spec.md 9 defines them: what is above bounds them already for usual clips. */
   uint32_t max_triangles;
   uint32_t max_harmonics;
   uint32_t max_frames_per_group;
@@ -54,14 +62,9 @@ typedef struct sac_settings {
   uint64_t max_group_values;
   uint64_t max_basis_values;
   uint64_t max_factor_values;
-  uint64_t max_memory; /* bytes of all that a decoder holds at a time, about */
-  double max_basis_work;
-  double max_free_work; /* of basis work, beside max_work_per_byte for each byte of the first frame */
+  double max_free_work; /* of the first frame, beside max_work_per_byte for each byte of its packet */
   double max_work_per_byte;
   double max_frame_work;
-  uint32_t skip_damage; /* 1: go on after damage at the next sound group; 0: errors are final */
-  uint32_t frame_step;  /* sac_decoder_receive() gives the frames whose number is a multiple of this, not 0 */
-  uint32_t threads;     /* that reconstruct frames of a group */
 } sac_settings;
 
 typedef enum sac_format {
