@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <string>
 
 #include "sac/decoder.h"
@@ -97,6 +98,19 @@ void Describe(const sac::FrameInfo& from, sac_frame_info* to) {
 // The size of the sac_settings that this version began with.
 constexpr std::size_t kFirstSettings = offsetof(sac_settings, max_frame_work) + sizeof(sac_settings::max_frame_work);
 
+// Runs the jobs of a decoder by a function of C.
+struct CJobRunner {
+  sac_run_jobs run;
+  void* user;
+
+  void operator()(std::size_t jobs, const std::function<void(std::size_t)>& job) const {
+    const auto call = [](void* context, std::size_t i) {
+      (*static_cast<const std::function<void(std::size_t)>*>(context))(i);
+    };
+    run(user, jobs, call, const_cast<std::function<void(std::size_t)>*>(&job));
+  }
+};
+
 // Arrays of arrays are what C sees as one array.
 template <class Out, class In>
 const Out* Flat(const std::vector<In>& values) {
@@ -142,6 +156,7 @@ sac_status sac_decoder_open(sac_decoder** decoder, const sac_settings* settings)
   to.frame_step = s.frame_step;
   to.threads = s.threads;
   try {
+    if (s.run_jobs != nullptr) to.run_jobs = CJobRunner{s.run_jobs, s.run_jobs_user};
     *decoder = new sac_decoder{sac::Decoder(to), {}};
     return SAC_OK;
   } catch (const std::exception&) {

@@ -42,6 +42,10 @@ typedef enum sac_status {
   SAC_LIMIT = 5             /* a limit of the settings, or of memory */
 } sac_status;
 
+/* Runs jobs 0 to jobs - 1: calls job(context, i) once for each i, in any order and on any threads, and returns when all
+ * calls have returned. `user` is that of the settings. It must not throw or jump out. */
+typedef void (*sac_run_jobs)(void* user, size_t jobs, void (*job)(void* context, size_t i), void* context);
+
 /* Set it with sac_settings_init(), then change what is to be different. */
 typedef struct sac_settings {
   uint32_t struct_size; /* of this struct, set by sac_settings_init(): later versions may add members */
@@ -52,7 +56,11 @@ typedef struct sac_settings {
 
   uint32_t skip_damage; /* 1: go on after damage at the next sound group; 0: errors are final */
   uint32_t frame_step;  /* sac_decoder_receive() gives the frames whose number is a multiple of this, not 0 */
-  uint32_t threads;     /* threads that reconstruct frames of a group, at most 1024 */
+  uint32_t threads;     /* frames of a group that are reconstructed at the same time, 1 to 1024; see run_jobs */
+  /* The job system that reconstructs them, called with at most `threads` jobs from within sac_decoder_receive(). Null:
+   * threads that live as long as the call. SAC_INVALID_ARGUMENT when it leaves a job out. */
+  sac_run_jobs run_jobs;
+  void* run_jobs_user;
 
   /* Expert limits, of single sizes, as spec.md 9 defines them: what is above bounds them already for usual clips. */
   uint32_t max_triangles;
