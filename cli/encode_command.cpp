@@ -166,14 +166,14 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
             "search for the best quality in at most so many bits a vertex and frame; with another target, fail where "
             "that takes more");
   AddFrameRate(app, encoder);
-  AddNumber(app, "--harmonics", encoder.harmonics, 1u, Limits{}.harmonics,
+  AddNumber(app, "--harmonics", encoder.harmonics, 1u, Limits{}.expert.harmonics,
             "manifold harmonics over all components; time and memory grow with them [from the quality]");
   AddNumber(
       app, "--samples-per-harmonic", encoder.samples_per_harmonic, 0u, 64u,
       "radial functions a harmonic that the basis is computed from; 0 for exact harmonics, which start slowly [2]");
-  AddNumber(app, "--group", encoder.group, 1u, Limits{}.frames_per_group,
+  AddNumber(app, "--group", encoder.group, 1u, Limits{}.expert.frames_per_group,
             "frames between points of random access [128]");
-  CLI::Option* pyramid = AddNumber(app, "--pyramid", encoder.pyramid, 1u, Limits{}.frames_per_group,
+  CLI::Option* pyramid = AddNumber(app, "--pyramid", encoder.pyramid, 1u, Limits{}.expert.frames_per_group,
                                    "frames of a hierarchy of B-frames; 1 for P-frames only [16]");
   app.add_flag("--low-delay", encoder.low_delay, "P-frames only, each written as soon as it is read: for live streams")
       ->excludes(pyramid);

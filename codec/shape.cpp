@@ -25,7 +25,7 @@ Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> c
     if (counts[i] == 0 || counts[i] > components[i].count) {
       return Status::Corrupt("I-frame: more harmonics than vertices in a component");
     }
-    if (counts[i] > limits.harmonics) return Status::Limit("more harmonics in a component than the limit");
+    if (counts[i] > limits.expert.harmonics) return Status::Limit("more harmonics in a component than the limit");
     values += static_cast<std::uint64_t>(counts[i]) * components[i].count;
     const double samples = static_cast<double>(samples_per_harmonic) * counts[i];
     work += HarmonicsWork(components[i].count, counts[i], samples);
@@ -36,8 +36,8 @@ Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> c
     values += static_cast<std::uint64_t>(header.patch_size) * header.vertices;
     memory += static_cast<double>(sizeof(double)) * header.patch_size * header.vertices;
   }
-  if (work > limits.basis_work) return Status::Limit("the harmonic basis takes more work than the limit");
-  if (values > limits.basis_values) return Status::Limit("the harmonic basis is larger than the limit");
+  if (work > limits.work) return Status::Limit("the harmonic basis takes more work than the limit");
+  if (values > limits.expert.basis_values) return Status::Limit("the harmonic basis is larger than the limit");
   if (memory > static_cast<double>(limits.memory))
     return Status::Limit("the harmonic basis takes more memory than the limit");
   shape.memory = static_cast<std::uint64_t>(memory);
@@ -48,8 +48,8 @@ Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> c
 // before another.
 Status CheckSystems(const SequenceHeader& header, const Limits& limits, Shape& shape) {
   const auto vertices = static_cast<std::uint32_t>(shape.vertices());
-  const FactorSize max_size{std::min(limits.factor_values, (limits.memory - shape.memory) / (2 * kFactorMemory)),
-                            (limits.basis_work - shape.work) / 3};
+  const FactorSize max_size{std::min(limits.expert.factor_values, (limits.memory - shape.memory) / (2 * kFactorMemory)),
+                            (limits.work - shape.work) / 3};
   SparseCholesky probe;
   if (!probe.Analyze(LaplacianMatrix(shape.edges.ends, shape.weights, 0, vertices), max_size)) {
     return Status::Limit("the mesh is too entangled: its linear system takes more work or memory than the limit");
@@ -64,7 +64,7 @@ Status CheckSystems(const SequenceHeader& header, const Limits& limits, Shape& s
     frame += static_cast<double>(layout.size()) * vertices;
   }
   if (header.references_previous()) frame += probe.size().work;
-  if (frame > limits.frame_work) return Status::Limit("a frame takes more work than the limit");
+  if (frame > limits.expert.frame_work) return Status::Limit("a frame takes more work than the limit");
   return Status::Ok();
 }
 
@@ -72,13 +72,14 @@ Status CheckSystems(const SequenceHeader& header, const Limits& limits, Shape& s
 
 Limits LimitsOfIFrame(const Limits& limits, std::size_t i_frame_bytes) {
   Limits narrowed = limits;
-  narrowed.basis_work =
-      std::min(limits.basis_work, limits.free_work + limits.work_per_byte * static_cast<double>(i_frame_bytes));
+  narrowed.work =
+      std::min(limits.work, limits.expert.free_work + limits.expert.work_per_byte * static_cast<double>(i_frame_bytes));
   return narrowed;
 }
 
 std::uint64_t MaxGroupValues(const Limits& limits, const Shape& shape) {
-  return std::min(limits.group_values, (limits.memory - std::min(limits.memory, shape.memory)) / kCoefficientMemory);
+  return std::min(limits.expert.group_values,
+                  (limits.memory - std::min(limits.memory, shape.memory)) / kCoefficientMemory);
 }
 
 unsigned UseThreads(unsigned threads, const Limits& limits, Shape& shape) {
@@ -121,7 +122,7 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
     SAC_RETURN_IF_ERROR(ComputeHarmonics({shape.edges, shape.weights, alike, mesh.grid, mesh.patches, patch_sizes}, {},
                                          shape.patch_basis));
   }
-  const Spare spare{limits.basis_work - shape.work, static_cast<double>(limits.memory - shape.memory)};
+  const Spare spare{limits.work - shape.work, static_cast<double>(limits.memory - shape.memory)};
   return ComputeHarmonics(
       {shape.edges, shape.weights, shape.masses, mesh.grid, shape.components, counts, samples_per_harmonic}, spare,
       shape.basis);

@@ -8,6 +8,9 @@
 
 namespace sac {
 
+static_assert(std::endian::native == std::endian::little,
+              "the processor must be little-endian: Draco reads meshes in the byte order of the processor");
+
 // Writes little-endian bytes and varints (spec.md 2.2). A varint holds 7 bits a byte, least significant first. It has
 // at most 5 bytes and never a superfluous final zero byte, so that every value has one spelling.
 class ByteWriter {

@@ -95,7 +95,7 @@ Status PacketReader::TakeTag() {
     crc_size_ = 1;
   }
   // It is held as it comes, with room to grow, and as a packet.
-  if (const auto most = std::min<std::uint64_t>(limits_.packet_bytes, limits_.memory / 4); size > most) {
+  if (const auto most = std::min<std::uint64_t>(limits_.expert.packet_bytes, limits_.memory / 4); size > most) {
     return Status::Limit("a packet of " + std::to_string(size) + " bytes, the limit is " + std::to_string(most));
   }
   needed_ = tag_size_ + size + crc_size_;

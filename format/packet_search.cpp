@@ -19,7 +19,7 @@ constexpr std::uint64_t kMemoryOfByte = 50;  // that is held: itself, and a cand
 
 PacketSearch::PacketSearch(const Limits& limits)
     : max_payload_(static_cast<std::uint32_t>(
-          std::min<std::uint64_t>({limits.packet_bytes, kMaxPayload, limits.memory / kMemoryOfByte}))) {}
+          std::min<std::uint64_t>({limits.expert.packet_bytes, kMaxPayload, limits.memory / kMemoryOfByte}))) {}
 
 bool PacketSearch::TakeStart(const Start& start) {
   const std::span<const std::uint8_t> rest = std::span(held_).subspan(start.begin - held_from_);

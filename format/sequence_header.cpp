@@ -63,7 +63,8 @@ Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& 
     if (!std::isfinite(v) || v < 0) return Status::Corrupt("sequence header: a step is negative");
   }
   if (header.vertices > limits.vertices) return Exceeds("vertices", header.vertices, limits.vertices);
-  if (header.triangles > limits.triangles) return Exceeds("triangles", header.triangles, limits.triangles);
+  if (header.triangles > limits.expert.triangles)
+    return Exceeds("triangles", header.triangles, limits.expert.triangles);
   if (MeshMemory(header.vertices, header.triangles) > limits.memory)
     return Status::Limit("the mesh takes more memory than the limit");
   return Status::Ok();

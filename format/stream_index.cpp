@@ -55,7 +55,7 @@ Status ReadIndex(std::span<const std::uint8_t> tail, const Limits& limits, Strea
   if (tail.size() < kStreamTail) return Status::NeedMoreData();
   ByteReader last(tail.last(kStreamTail));
   const std::uint32_t size = last.U32();
-  if (size <= kStreamTail || size > PacketSize(limits.packet_bytes)) return none;
+  if (size <= kStreamTail || size > PacketSize(limits.expert.packet_bytes)) return none;
   needed = size;
   if (tail.size() < size) return Status::NeedMoreData();
   Packet packet;

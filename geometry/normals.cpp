@@ -7,8 +7,8 @@
 
 namespace sac {
 
-std::vector<Vec3f> VertexNormals(const Positions& positions, const std::vector<Triangle>& triangles) {
-  std::vector<std::array<double, 3>> sums(positions.size());
+const std::vector<Vec3f>& NormalField::Compute(const Positions& positions, const std::vector<Triangle>& triangles) {
+  sums_.assign(positions.size(), {});
   for (const Triangle& t : triangles) {
     std::array<double, 3> u, w;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -19,16 +19,21 @@ std::vector<Vec3f> VertexNormals(const Positions& positions, const std::vector<T
     for (std::size_t a = 0; a < 3; ++a) {  // twice the area long
       const std::size_t b = (a + 1) % 3, c = (a + 2) % 3;
       const double n = u[b] * w[c] - u[c] * w[b];
-      for (const std::uint32_t corner : t) sums[corner][a] += n;
+      for (const std::uint32_t corner : t) sums_[corner][a] += n;
     }
   }
-  std::vector<Vec3f> normals(positions.size());
-  for (std::size_t v = 0; v < sums.size(); ++v) {
-    const double length = std::hypot(sums[v][0], sums[v][1], sums[v][2]);
+  normals_.assign(positions.size(), {});
+  for (std::size_t v = 0; v < sums_.size(); ++v) {
+    const double length = std::hypot(sums_[v][0], sums_[v][1], sums_[v][2]);
     if (!(length > 0) || !std::isfinite(length)) continue;
-    for (std::size_t a = 0; a < 3; ++a) normals[v][a] = static_cast<float>(sums[v][a] / length);
+    for (std::size_t a = 0; a < 3; ++a) normals_[v][a] = static_cast<float>(sums_[v][a] / length);
   }
-  return normals;
+  return normals_;
+}
+
+std::vector<Vec3f> VertexNormals(const Positions& positions, const std::vector<Triangle>& triangles) {
+  NormalField field;
+  return field.Compute(positions, triangles);
 }
 
 }  // namespace sac

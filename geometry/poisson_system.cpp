@@ -31,7 +31,7 @@ const PositionMatrix& PoissonSystem::Solve(const DeformationGradients& gradients
     right_side_.row(b) -= pull;
   }
   columns_ = right_side_;
-  solver_.SolveInPlace(columns_);
+  solver_.SolveInPlace(columns_, scratch_);
   solution_ = columns_;
   for (const Component& c : components_) {
     const auto mass = masses_.segment(c.first, c.count);

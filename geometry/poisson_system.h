@@ -40,6 +40,7 @@ class PoissonSystem {
   bool analyzed_ = false;
   PositionMatrix right_side_;
   RowMatrix columns_;
+  std::vector<double> scratch_;  // of the solver
   PositionMatrix solution_;
 };
 

@@ -1,7 +1,6 @@
 #include "geometry/sparse_cholesky.h"
 
 #include <algorithm>
-#include <vector>
 
 namespace sac {
 
@@ -43,10 +42,12 @@ bool SparseCholesky::Factorize(const Matrix& matrix) {
 }
 
 template <int kColumns>
-void SparseCholesky::SolveBlocks(RowMatrix& columns) const {
+void SparseCholesky::SolveBlocks(RowMatrix& columns, std::vector<double>& scratch) const {
   using Row = Eigen::Matrix<double, 1, kColumns>;
   const auto& below = m_matrix;  // the factor without its diagonal of ones
-  Eigen::Matrix<double, Eigen::Dynamic, kColumns, Eigen::RowMajor> x(columns.rows(), kColumns);
+  scratch.resize(static_cast<std::size_t>(columns.rows()) * kColumns);
+  Eigen::Map<Eigen::Matrix<double, Eigen::Dynamic, kColumns, Eigen::RowMajor>> x(scratch.data(), columns.rows(),
+                                                                                 kColumns);
   for (Eigen::Index first = 0; first < columns.cols(); first += kColumns) {
     const Eigen::Index count = std::min<Eigen::Index>(kColumns, columns.cols() - first);
     x.rightCols(kColumns - count).setZero();
@@ -65,11 +66,11 @@ void SparseCholesky::SolveBlocks(RowMatrix& columns) const {
   }
 }
 
-void SparseCholesky::SolveInPlace(RowMatrix& columns) const {
+void SparseCholesky::SolveInPlace(RowMatrix& columns, std::vector<double>& scratch) const {
   if (columns.cols() <= 4) {
-    SolveBlocks<4>(columns);
+    SolveBlocks<4>(columns, scratch);
   } else {
-    SolveBlocks<8>(columns);
+    SolveBlocks<8>(columns, scratch);
   }
 }
 

@@ -4,6 +4,7 @@
 #include <Eigen/SparseCore>
 #include <cstdint>
 #include <limits>
+#include <vector>
 
 namespace sac {
 
@@ -33,11 +34,16 @@ class SparseCholesky : private Eigen::SimplicialLDLT<Eigen::SparseMatrix<double>
   using Base::solve;
 
   // Solves A X = B and stores X in place of B. It is faster than solve(), which reads the factor again for each column.
-  void SolveInPlace(RowMatrix& columns) const;
+  void SolveInPlace(RowMatrix& columns) const {
+    std::vector<double> scratch;
+    SolveInPlace(columns, scratch);
+  }
+  // Does the same with `scratch` for intermediate values, which keeps its memory from call to call.
+  void SolveInPlace(RowMatrix& columns, std::vector<double>& scratch) const;
 
  private:
   template <int kColumns>
-  void SolveBlocks(RowMatrix& columns) const;
+  void SolveBlocks(RowMatrix& columns, std::vector<double>& scratch) const;
   // Returns false as soon as the count exceeds `limit`.
   bool Count(const CholMatrixType& ordered, const FactorSize& limit);
 

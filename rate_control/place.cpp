@@ -38,7 +38,7 @@ OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t f
   double harmonics = fixed_harmonics;
   if (fixed_harmonics == 0) {
     harmonics = std::round(std::min(s.harmonics * std::exp(place.log_harmonics), most));
-    harmonics = std::clamp(harmonics, 1.0, static_cast<double>(Limits{}.harmonics));
+    harmonics = std::clamp(harmonics, 1.0, static_cast<double>(Limits{}.expert.harmonics));
   }
   // Beyond what docs and reports say, digits tell nothing.
   return {s.motion_step * std::exp(place.log_motion), s.displacement_step, s.detail_step,

@@ -2,6 +2,7 @@
 #include <cstddef>
 #include <cstring>
 #include <exception>
+#include <functional>
 #include <string>
 
 #include "codec/c_status.h"
@@ -40,18 +41,18 @@ Status Missing() { return Status::InvalidArgument("a null pointer"); }
 template <class Settings, class Limits, class Visit>
 void VisitLimits(Settings& settings, Limits& limits, Visit&& visit) {
   visit(settings.max_vertices, limits.vertices);
-  visit(settings.max_triangles, limits.triangles);
-  visit(settings.max_harmonics, limits.harmonics);
-  visit(settings.max_frames_per_group, limits.frames_per_group);
-  visit(settings.max_packet_bytes, limits.packet_bytes);
-  visit(settings.max_group_values, limits.group_values);
-  visit(settings.max_basis_values, limits.basis_values);
-  visit(settings.max_factor_values, limits.factor_values);
   visit(settings.max_memory, limits.memory);
-  visit(settings.max_basis_work, limits.basis_work);
-  visit(settings.max_free_work, limits.free_work);
-  visit(settings.max_work_per_byte, limits.work_per_byte);
-  visit(settings.max_frame_work, limits.frame_work);
+  visit(settings.max_work, limits.work);
+  visit(settings.max_triangles, limits.expert.triangles);
+  visit(settings.max_harmonics, limits.expert.harmonics);
+  visit(settings.max_frames_per_group, limits.expert.frames_per_group);
+  visit(settings.max_packet_bytes, limits.expert.packet_bytes);
+  visit(settings.max_group_values, limits.expert.group_values);
+  visit(settings.max_basis_values, limits.expert.basis_values);
+  visit(settings.max_factor_values, limits.expert.factor_values);
+  visit(settings.max_free_work, limits.expert.free_work);
+  visit(settings.max_work_per_byte, limits.expert.work_per_byte);
+  visit(settings.max_frame_work, limits.expert.frame_work);
 }
 
 sac::VertexBuffer ToBuffer(const sac_vertex_buffer& b) {
@@ -76,8 +77,21 @@ void Describe(const sac::FrameInfo& from, sac_frame_info* to) {
   std::copy(from.box.high.begin(), from.box.high.end(), to->box_high);
 }
 
-// What sac_settings had in its first version.
-constexpr std::size_t kFirstSettings = offsetof(sac_settings, threads) + sizeof(sac_settings::threads);
+// The size of the sac_settings that this version began with.
+constexpr std::size_t kFirstSettings = offsetof(sac_settings, max_frame_work) + sizeof(sac_settings::max_frame_work);
+
+// Runs the jobs of a decoder by a function of C.
+struct CJobRunner {
+  sac_run_jobs run;
+  void* user;
+
+  void operator()(std::size_t jobs, const std::function<void(std::size_t)>& job) const {
+    const auto call = [](void* context, std::size_t i) {
+      (*static_cast<const std::function<void(std::size_t)>*>(context))(i);
+    };
+    run(user, jobs, call, const_cast<std::function<void(std::size_t)>*>(&job));
+  }
+};
 
 // Arrays of arrays are what C sees as one array.
 template <class Out, class In>
@@ -124,6 +138,7 @@ sac_status sac_decoder_open(sac_decoder** decoder, const sac_settings* settings)
   to.frame_step = s.frame_step;
   to.threads = s.threads;
   try {
+    if (s.run_jobs != nullptr) to.run_jobs = CJobRunner{s.run_jobs, s.run_jobs_user};
     *decoder = new sac_decoder{sac::Decoder(to), {}};
     return SAC_OK;
   } catch (const std::exception&) {

@@ -18,7 +18,8 @@ class DamagePolicy {
   bool skips() const { return skips_; }
 
   // Returns the status that decoding goes on with after a part of the stream gave `status`: ok when that part is passed
-  // over. A part that exceeds a limit is sound and never passed over: its frames would be missing without damage.
+  // over. Only what is wrong with the stream is: a part that exceeds a limit, or that the caller's job system failed
+  // on, is sound, and its frames would be missing without damage.
   Status Judge(Status status) const { return PassesOver(status) ? Status::Ok() : status; }
 
   // Judges the status of a part that holds the frames from `first` to before `end`, which are lost when it is passed
@@ -33,7 +34,9 @@ class DamagePolicy {
   const LostFrames& lost() const { return lost_; }
 
  private:
-  bool PassesOver(const Status& status) const { return skips_ && !status.ok() && status.code() != StatusCode::kLimit; }
+  bool PassesOver(const Status& status) const {
+    return skips_ && (status.code() == StatusCode::kCorrupt || status.code() == StatusCode::kUnsupported);
+  }
 
   bool skips_;
   LostFrames lost_;

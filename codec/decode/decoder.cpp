@@ -74,7 +74,7 @@ Status Decoder::AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed
   return impl_->Contain([&](StreamDecoder& stream) { return stream.AddIndex(tail, needed); });
 }
 
-void Decoder::Reset() { impl_->Restart(); }
+void Decoder::Reset() noexcept { impl_->Restart(); }
 
 const StreamInfo* Decoder::info() const {
   const StreamStart& start = impl_->stream->start();

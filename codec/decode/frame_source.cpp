@@ -4,14 +4,16 @@
 #include <cmath>
 #include <exception>
 #include <limits>
+#include <new>
 #include <string>
-#include <thread>
 #include <utility>
+
+#include "codec/decode/run_jobs.h"
 
 namespace sac {
 namespace {
 
-constexpr std::uint32_t kRun = 4;  // frames that a thread reconstructs in one go
+constexpr std::size_t kRun = 4;  // frames that a job reconstructs, one after another
 
 std::int32_t Between(std::int32_t a, std::int32_t b, double t) {
   return static_cast<std::int32_t>(std::lround(a + t * (static_cast<double>(b) - a)));
@@ -39,8 +41,8 @@ Status Round(const PositionMatrix& matrix, std::uint32_t frame, Positions& posit
 
 }  // namespace
 
-FrameSource::FrameSource(const Shape& shape, const SequenceHeader& header, unsigned threads)
-    : shape_(shape), header_(header) {
+FrameSource::FrameSource(const Shape& shape, const SequenceHeader& header, unsigned threads, const JobRunner& run_jobs)
+    : shape_(shape), header_(header), run_jobs_(run_jobs) {
   reconstructors_.resize(threads);
 }
 
@@ -90,26 +92,34 @@ void FrameSource::ReconstructRun(std::size_t job) {
     } catch (const std::exception&) {
       r.status = Status::Limit("out of memory");
     }
+    r.done = true;
   }
 }
 
-void FrameSource::ReconstructAhead(std::uint32_t frame, std::uint32_t step) {
+Status FrameSource::ReconstructAhead(std::uint32_t frame, std::uint32_t step) {
   DropReady();
   ready_.resize(kRun * reconstructors_.size());
   for (std::uint64_t f = frame; f < now_.end() && ready_count_ < ready_.size(); f += step) {
-    ready_[ready_count_++].frame = static_cast<std::uint32_t>(f);
+    Ready& ready = ready_[ready_count_++];
+    ready.frame = static_cast<std::uint32_t>(f);
+    ready.done = false;
   }
-  std::vector<std::thread> others;
-  others.reserve(reconstructors_.size());
-  for (std::size_t job = 1; job * kRun < ready_count_; ++job) {
-    try {
-      others.emplace_back([this, job] { ReconstructRun(job); });
-    } catch (const std::exception&) {  // there are too many threads already, or there is no memory for one more
-      ReconstructRun(job);
-    }
+  const std::size_t jobs = (ready_count_ + kRun - 1) / kRun;
+  const auto job = [this](std::size_t j) { ReconstructRun(j); };
+  if (!run_jobs_ || jobs == 1) {
+    RunOnThreads(jobs, job);
+    return Status::Ok();
   }
-  ReconstructRun(0);
-  for (std::thread& other : others) other.join();
+  try {
+    run_jobs_(jobs, job);
+  } catch (const std::bad_alloc&) {
+    DropReady();
+    throw;
+  } catch (...) {  // the caller's code may throw anything
+    DropReady();
+    return Status::InvalidArgument("run_jobs threw an exception");
+  }
+  return Status::Ok();
 }
 
 Status FrameSource::Reconstruct(std::uint32_t frame, std::uint32_t step, Positions& positions) {
@@ -117,8 +127,9 @@ Status FrameSource::Reconstruct(std::uint32_t frame, std::uint32_t step, Positio
     return ReconstructWith(*reconstructors_[0], frame, positions);
   }
   while (first_ready_ < ready_count_ && ready_[first_ready_].frame != frame) ++first_ready_;
-  if (first_ready_ == ready_count_) ReconstructAhead(frame, step);
+  if (first_ready_ == ready_count_) SAC_RETURN_IF_ERROR(ReconstructAhead(frame, step));
   Ready& ready = ready_[first_ready_++];
+  if (!ready.done) return Status::InvalidArgument("run_jobs has left a job out");
   positions.swap(ready.positions);
   return ready.status;
 }

@@ -10,6 +10,7 @@
 #include "codec/reconstruct.h"
 #include "codec/shape.h"
 #include "format/sequence_header.h"
+#include "sac/decoder.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
 
@@ -18,8 +19,9 @@ namespace sac {
 // Holds the coefficients of the frames that were read last, and turns them into positions.
 class FrameSource {
  public:
-  // `shape` must outlive the object. `threads`, one at least, reconstruct frames that do not depend on each other.
-  FrameSource(const Shape& shape, const SequenceHeader& header, unsigned threads);
+  // `shape` and `run_jobs` must outlive the object. `threads` frames, one at least, that do not depend on each other
+  // are reconstructed at the same time, by `run_jobs` unless that is empty.
+  FrameSource(const Shape& shape, const SequenceHeader& header, unsigned threads, const JobRunner& run_jobs);
 
   // Holds the frames of a new group, or the next frame of an open group. The last frame of those before is kept for
   // Interpolate(). kCorrupt when the first frame's shape is singular.
@@ -35,7 +37,7 @@ class FrameSource {
 
   // Gives the positions of a frame that frames() has. Frames are asked for by ascending numbers, and all of them where
   // they are measured against the frame before; the next one is likely to be `step` later. kCorrupt, with the frame's
-  // number.
+  // number; kInvalidArgument when run_jobs does not do its part.
   Status Reconstruct(std::uint32_t frame, std::uint32_t step, Positions& positions);
 
   // Gives the positions at `time`, in frames, whose frames before and after are held. See Decoder::Interpolate().
@@ -45,21 +47,23 @@ class FrameSource {
   // A frame that is reconstructed ahead of being asked for.
   struct Ready {
     std::uint32_t frame = 0;
+    bool done = false;
     Status status;
     Positions positions;
   };
 
   const CodedFrames::Frame* Find(std::uint32_t frame) const;
   Status ReconstructWith(Reconstructor& with, std::uint32_t frame, Positions& positions) const;
-  // Reconstructs a batch of frames from `frame` on, each thread a run of them.
-  void ReconstructAhead(std::uint32_t frame, std::uint32_t step);
+  // Reconstructs a batch of frames from `frame` on, each job a run of them. kInvalidArgument when run_jobs throws.
+  Status ReconstructAhead(std::uint32_t frame, std::uint32_t step);
   // Reconstructs the run of frames of job number `job` of that batch.
   void ReconstructRun(std::size_t job);
   void DropReady() { first_ready_ = ready_count_ = 0; }
 
   const Shape& shape_;
   SequenceHeader header_;
-  std::vector<std::unique_ptr<Reconstructor>> reconstructors_;  // one a thread
+  const JobRunner& run_jobs_;
+  std::vector<std::unique_ptr<Reconstructor>> reconstructors_;  // one a job
   CodedFrames now_;
   std::optional<CodedFrames::Frame> before_;  // the frame of number now_.first - 1
   // Frames by ascending numbers, of which those from first_ready_ to before ready_count_ are ready. All keep their

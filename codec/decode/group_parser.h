@@ -35,7 +35,7 @@ class GroupParser {
   GroupParser(const SequenceHeader& header, const Shape& shape, const Limits& limits)
       : header_(header),
         layouts_(shape.layouts),
-        frames_per_group_(limits.frames_per_group),
+        frames_per_group_(limits.expert.frames_per_group),
         group_values_(MaxGroupValues(limits, shape)) {}
 
   // A group. Of one whose code is `cut` off, the frames whose bytes are all there, the others not whole. kCorrupt, with

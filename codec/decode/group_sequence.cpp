@@ -27,7 +27,7 @@ GroupSequence::GroupSequence(const SequenceHeader& header, Shape& shape, const D
     : header_(header),
       settings_(settings),
       damage_(damage),
-      source_(shape, header, ThreadsFor(header, settings, shape)),
+      source_(shape, header, ThreadsFor(header, settings, shape), settings.run_jobs),
       parser_(header, shape, settings.limits),
       next_frame_(first_frame) {}
 

@@ -8,12 +8,14 @@
 
 namespace sac {
 
-// The frames that damage has cost.
+// The frames that are lost by damage.
 class LostFrames {
  public:
-  // Those from `first` to before `end`; some may be there already.
+  // Adds the frames from `first` to before `end`, of which some may be there already.
   void Add(std::uint64_t first, std::uint64_t end) {
-    auto at = std::ranges::lower_bound(ranges_, first, {}, End);
+    // Algorithms of std::ranges are missing in libc++ 14.
+    auto at = std::lower_bound(ranges_.begin(), ranges_.end(), first,
+                               [](const FrameRange& range, std::uint64_t frame) { return End(range) < frame; });
     while (at != ranges_.end() && at->first <= end) {  // joins with what it touches
       first = std::min<std::uint64_t>(first, at->first);
       end = std::max(end, End(*at));
@@ -23,7 +25,8 @@ class LostFrames {
   }
   bool any() const { return !ranges_.empty(); }
   bool Has(std::uint64_t frame) const {
-    const auto at = std::ranges::upper_bound(ranges_, frame, {}, End);
+    const auto at = std::upper_bound(ranges_.begin(), ranges_.end(), frame,
+                                     [](std::uint64_t f, const FrameRange& range) { return f < End(range); });
     return at != ranges_.end() && at->first <= frame;
   }
   // Ascending; none touches another.

@@ -11,22 +11,24 @@
 
 namespace sac {
 
-// Where groups begin, as far as known.
+// The places in a stream where groups begin, as far as they are known.
 class SeekTable {
  public:
-  // The end of the I-frame: no group begins before. `is_first`: the first one begins there.
+  // Sets the end of the I-frame, before which no group begins. `is_first` says that the group of frame 0 begins there.
   void Start(std::uint64_t byte, bool is_first) {
     start_ = {byte, std::nullopt};
     if (is_first) start_.first_frame = 0;
   }
 
+  // Adds a group that begins at `byte` with the frame `first_frame`.
   void Add(std::uint64_t byte, std::uint32_t first_frame) {
     if (has_index_) return;
-    const auto at = std::ranges::lower_bound(places_, byte, {}, &Place::byte);
+    const auto at = std::lower_bound(places_.begin(), places_.end(), byte,
+                                     [](const Place& place, std::uint64_t b) { return place.byte < b; });
     if (at == places_.end() || at->byte != byte) places_.insert(at, {byte, first_frame});
   }
 
-  // All of them; returns the byte after the last group.
+  // Replaces all places by those of an index. Returns the byte after the last group.
   std::uint64_t Take(const StreamIndex& index) {
     has_index_ = true;
     places_.clear();
@@ -46,9 +48,10 @@ class SeekTable {
     bool operator==(const Place&) const = default;
   };
 
-  // Where to read on for `frame`: the last known group that begins with it or before.
+  // Returns where to read on for `frame`: the last known group that begins with it or before.
   Place Find(std::uint32_t frame) const {
-    const auto at = std::ranges::upper_bound(places_, frame, {}, &Place::first_frame);
+    const auto at = std::upper_bound(places_.begin(), places_.end(), frame,
+                                     [](std::uint32_t f, const Place& place) { return f < place.first_frame; });
     return at == places_.begin() ? start_ : *std::prev(at);
   }
 

@@ -123,13 +123,13 @@ Status StreamDecoder::Receive(Positions& positions, FrameInfo& info, const Frame
 }
 
 void StreamDecoder::GiveOut(std::uint32_t frame, double time, const Positions& positions, FrameInfo& info,
-                            const FrameBuffers* buffers) const {
+                            const FrameBuffers* buffers) {
   const SequenceHeader& header = *start_.header();
   info.index = frame;
   info.intra = groups_->IsIntra(frame);
   info.time = header.frame_rate_numerator == 0 ? 0 : time / header.frames_per_second();
   info.box = BoundingBox(positions);
-  if (buffers) FillBuffers(positions, start_.shape().triangles, info.box, *buffers);
+  if (buffers) FillBuffers(positions, start_.shape().triangles, info.box, *buffers, normals_);
 }
 
 Status StreamDecoder::Finish() {

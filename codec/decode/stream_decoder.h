@@ -12,6 +12,7 @@
 #include "codec/decode/stream_start.h"
 #include "codec/decode/vertex_buffer.h"
 #include "format/packet.h"
+#include "geometry/normals.h"
 #include "sac/decoder.h"
 #include "sac/status.h"
 
@@ -69,7 +70,7 @@ class StreamDecoder {
   // Reads on until the frames before and after `time` are held.
   Status ReadAround(double time);
   void GiveOut(std::uint32_t frame, double time, const Positions& positions, FrameInfo& info,
-               const FrameBuffers* buffers) const;
+               const FrameBuffers* buffers);
 
   const DecoderSettings& settings_;
   DamagePolicy damage_;
@@ -77,6 +78,7 @@ class StreamDecoder {
   StreamStart start_;
   std::optional<GroupSequence> groups_;  // once the I-frame has been read
   SeekTable places_;
+  NormalField normals_;  // for the caller's buffers
   std::optional<std::uint32_t> total_frames_;
   std::optional<Status> error_;
   bool ended_ = false;     // the end packet has been read

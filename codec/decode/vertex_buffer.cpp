@@ -1,11 +1,10 @@
 #include "codec/decode/vertex_buffer.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstring>
 #include <string>
-
-#include "geometry/normals.h"
 
 namespace sac {
 namespace {
@@ -51,7 +50,7 @@ Status CheckBuffers(const FrameBuffers& buffers, std::size_t vertices) {
 }
 
 void FillBuffers(const Positions& positions, const std::vector<Triangle>& triangles, const Box& box,
-                 const FrameBuffers& buffers) {
+                 const FrameBuffers& buffers, NormalField& normals) {
   if (buffers.positions.data != nullptr) {
     std::array<double, 3> scale;
     for (std::size_t a = 0; a < 3; ++a) {
@@ -62,7 +61,7 @@ void FillBuffers(const Positions& positions, const std::vector<Triangle>& triang
          [&](double x, std::size_t a) { return std::clamp(std::lround((x - box.low[a]) * scale[a]), 0L, 65535L); });
   }
   if (buffers.normals.data != nullptr) {
-    Fill(VertexNormals(positions, triangles), buffers.normals,
+    Fill(normals.Compute(positions, triangles), buffers.normals,
          [](double x, std::size_t) { return std::lround(x * 32767); });
   }
 }

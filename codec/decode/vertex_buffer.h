@@ -3,17 +3,19 @@
 #include <cstddef>
 #include <vector>
 
+#include "geometry/normals.h"
 #include "sac/decoder.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
 
 namespace sac {
 
-// Whether `buffers` hold so many vertices: kInvalidArgument if not.
+// Checks that `buffers` hold `vertices` vertices. kInvalidArgument.
 Status CheckBuffers(const FrameBuffers& buffers, std::size_t vertices);
 
-// Fills what is wanted. `box`: of the positions.
+// Fills those of `buffers` that are wanted. `box` is the bounding box of `positions`; `normals` computes the normals if
+// they are wanted.
 void FillBuffers(const Positions& positions, const std::vector<Triangle>& triangles, const Box& box,
-                 const FrameBuffers& buffers);
+                 const FrameBuffers& buffers, NormalField& normals);
 
 }  // namespace sac

@@ -81,7 +81,7 @@ Status ReadMesh(const sac_input_mesh* from, Mesh& mesh) {
   if ((from->uvs > 0) != (from->uv_values != nullptr)) return Missing("uv_values, or uvs is 0");
   if ((from->uv_values == nullptr) != (from->triangle_uvs == nullptr)) return Missing("triangle_uvs, or no uv_values");
   const Limits limits;  // nothing larger can be coded
-  if (from->vertices > limits.vertices || from->triangles > limits.triangles) {
+  if (from->vertices > limits.vertices || from->triangles > limits.expert.triangles) {
     return Status::Limit("mesh: more vertices or triangles than streams may have");
   }
   mesh.positions.resize(from->vertices);

@@ -32,8 +32,9 @@ Status CheckSettings(const EncoderSettings& s) {
   if (!(s.quality >= 0 && s.quality <= 100)) return Status::InvalidArgument("quality must be from 0 to 100");
   if (s.harmonics && *s.harmonics == 0) return Status::InvalidArgument("at least one harmonic is needed");
   if (s.samples_per_harmonic > 64) return Status::InvalidArgument("a reduced basis has at most 64 samples a harmonic");
-  if (s.group == 0 || s.group > s.limits.frames_per_group) {
-    return Status::InvalidArgument("a group holds from 1 to " + std::to_string(s.limits.frames_per_group) + " frames");
+  if (s.group == 0 || s.group > s.limits.expert.frames_per_group) {
+    return Status::InvalidArgument("a group holds from 1 to " + std::to_string(s.limits.expert.frames_per_group) +
+                                   " frames");
   }
   if (s.pyramid == 0) return Status::InvalidArgument("a pyramid holds at least one frame");
   if (!(s.level_growth >= 1 && s.level_growth <= 2)) {
@@ -55,9 +56,9 @@ Status CheckSettings(const EncoderSettings& s) {
 Status CheckMesh(const Mesh& mesh, const Limits& limits) {
   const std::size_t n = mesh.positions.size();
   if (n == 0) return Status::InvalidArgument("the mesh has no vertices");
-  if (n > limits.vertices || mesh.triangles.size() > limits.triangles) {
+  if (n > limits.vertices || mesh.triangles.size() > limits.expert.triangles) {
     return Status::Limit("the mesh has more than " + std::to_string(limits.vertices) + " vertices or " +
-                         std::to_string(limits.triangles) + " triangles");
+                         std::to_string(limits.expert.triangles) + " triangles");
   }
   for (const Triangle& t : mesh.triangles) {
     if (std::max({t[0], t[1], t[2]}) >= n) return Status::InvalidArgument("a triangle of a missing vertex");

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -14,6 +15,10 @@
 
 namespace sac {
 
+// Runs jobs 0 to `jobs` - 1: calls `job` once with each number, in any order and on any threads, and returns when all
+// calls have returned. `job` throws nothing.
+using JobRunner = std::function<void(std::size_t jobs, const std::function<void(std::size_t)>& job)>;
+
 struct DecoderSettings {
   Limits limits;
   // Goes on after damage, at the next group that is sound; a stream may then also be entered anywhere. What is lost,
@@ -21,8 +26,13 @@ struct DecoderSettings {
   bool skip_damage = false;
   // Receive() gives the frames whose number is a multiple of this, at a fraction of the work.
   std::uint32_t frame_step = 1;  // not 0
-  // Threads that reconstruct frames of a group; they live as long as a call. 1: the caller's alone.
+  // How many frames of a group are reconstructed at the same time, as far as the memory limit allows. 1: all work is
+  // done by the caller's thread.
   unsigned threads = 1;
+  // The job system that reconstructs them, called with at most `threads` jobs from within Receive(). Empty: threads
+  // that live as long as the call, or the caller's where the platform has none. A call fails with kInvalidArgument when
+  // a runner throws or leaves a job out, with kLimit when it throws std::bad_alloc.
+  JobRunner run_jobs;
 };
 
 struct FrameInfo {
@@ -95,8 +105,9 @@ class Decoder {
 
   // Decodes the next frame. kNeedMoreData when none is ready.
   Status Receive(DecodedFrame& frame);
-  // Likewise into the caller's memory, such as a mapped buffer of a GPU. kInvalidArgument, and the frame still waits,
-  // when a buffer is too small.
+  // Decodes the next frame into the caller's memory, such as a mapped buffer of a GPU. After the first frames
+  // of a stream nothing is allocated within a group, but for threads that are made there. kNeedMoreData when no frame
+  // is ready; kInvalidArgument, and the frame still waits, when a buffer is too small.
   Status Receive(const FrameBuffers& buffers, FrameInfo& info);
 
   // Declares the end of the bytes: kCorrupt when the stream is not complete. With skip_damage, more frames may be ready
@@ -112,7 +123,8 @@ class Decoder {
   // kNeedMoreData before the I-frame has been sent; kInvalidArgument when the clip is known to end before. An error of
   // the stream's damage ends here.
   Status Seek(std::uint32_t frame, std::uint64_t& byte);
-  // Likewise to the frame that is shown at so many seconds. kInvalidArgument when the stream has no frame rate.
+  // Goes to the frame that is shown `seconds` after the clip's begin. kInvalidArgument when the stream has no frame
+  // rate, otherwise as Seek().
   Status SeekTime(double seconds, std::uint64_t& byte);
 
   // Makes Seek() know where all groups begin, from the last bytes of the stream. kNeedMoreData when there are too few:
@@ -129,8 +141,8 @@ class Decoder {
   Status Interpolate(double time, DecodedFrame& frame);
   Status Interpolate(double time, const FrameBuffers& buffers, FrameInfo& info);
 
-  // Forgets everything but the settings: another stream may begin.
-  void Reset();
+  // Forgets everything but the settings: another stream may begin. Needs no memory.
+  void Reset() noexcept;
 
   // What the stream says of itself, and the first frame's mesh with its static attributes; null before they have been
   // decoded.

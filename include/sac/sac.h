@@ -43,11 +43,27 @@ typedef enum sac_status {
   SAC_CANCELLED = 6         /* the progress callback asked to stop */
 } sac_status;
 
+/* Runs jobs 0 to jobs - 1: calls job(context, i) once for each i, in any order and on any threads, and returns when all
+ * calls have returned. `user` is that of the settings. It must not throw or jump out. */
+typedef void (*sac_run_jobs)(void* user, size_t jobs, void (*job)(void* context, size_t i), void* context);
+
 /* Set it with sac_settings_init(), then change what is to be different. */
 typedef struct sac_settings {
   uint32_t struct_size; /* of this struct, set by sac_settings_init(): later versions may add members */
-  /* What a stream may ask for (spec.md 9); over it it is refused before anything is allocated. */
+  /* What a stream may ask for (spec.md 9); a stream that asks for more is refused before anything is allocated. */
   uint32_t max_vertices;
+  uint64_t max_memory; /* bytes of all that a decoder holds at a time, approximately */
+  double max_work;     /* multiplications for what is derived from the first frame, approximately */
+
+  uint32_t skip_damage; /* 1: go on after damage at the next sound group; 0: errors are final */
+  uint32_t frame_step;  /* sac_decoder_receive() gives the frames whose number is a multiple of this, not 0 */
+  uint32_t threads;     /* frames of a group that are reconstructed at the same time, 1 to 1024; see run_jobs */
+  /* The job system that reconstructs them, called with at most `threads` jobs from within sac_decoder_receive(). Null:
+   * threads that live as long as the call. SAC_INVALID_ARGUMENT when it leaves a job out. */
+  sac_run_jobs run_jobs;
+  void* run_jobs_user;
+
+  /* Expert limits, of single sizes, as spec.md 9 defines them: what is above bounds them already for usual clips. */
   uint32_t max_triangles;
   uint32_t max_harmonics;
   uint32_t max_frames_per_group;
@@ -55,14 +71,9 @@ typedef struct sac_settings {
   uint64_t max_group_values;
   uint64_t max_basis_values;
   uint64_t max_factor_values;
-  uint64_t max_memory; /* bytes of all that a decoder holds at a time, about */
-  double max_basis_work;
-  double max_free_work; /* of basis work, beside max_work_per_byte for each byte of the first frame */
+  double max_free_work; /* of the first frame, beside max_work_per_byte for each byte of its packet */
   double max_work_per_byte;
   double max_frame_work;
-  uint32_t skip_damage; /* 1: go on after damage at the next sound group; 0: errors are final */
-  uint32_t frame_step;  /* sac_decoder_receive() gives the frames whose number is a multiple of this, not 0 */
-  uint32_t threads;     /* that reconstruct frames of a group */
 } sac_settings;
 
 typedef enum sac_format {
@@ -114,6 +125,7 @@ typedef struct sac_decoder sac_decoder;
 SAC_API const char* sac_version(void);
 SAC_API const char* sac_stream_version(void);
 
+/* Sets all members to the defaults. Null is allowed and nothing happens. */
 SAC_API void sac_settings_init(sac_settings* settings);
 
 /* Null `settings` are those of sac_settings_init(). Else *decoder is null: SAC_INVALID_ARGUMENT when the settings
@@ -121,7 +133,7 @@ SAC_API void sac_settings_init(sac_settings* settings);
 SAC_API sac_status sac_decoder_open(sac_decoder** decoder, const sac_settings* settings);
 /* Null is allowed. */
 SAC_API void sac_decoder_close(sac_decoder* decoder);
-/* Forgets everything but the settings: another stream may begin. */
+/* Forgets everything but the settings: another stream may begin. Needs no memory. Null is allowed. */
 SAC_API void sac_decoder_reset(sac_decoder* decoder);
 
 /* Takes bytes from *data, at most until a packet is complete, and moves *data and *size on. Takes nothing while frames

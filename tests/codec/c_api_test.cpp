@@ -160,7 +160,7 @@ TEST(CApi, SettingsCount) {
   settings.frame_step = 0;
   EXPECT_EQ(sac_decoder_open(&none, &settings), SAC_INVALID_ARGUMENT);
   sac_settings_init(&settings);
-  settings.max_basis_work = std::nan("");
+  settings.max_work = std::nan("");
   EXPECT_EQ(sac_decoder_open(&none, &settings), SAC_INVALID_ARGUMENT);
   EXPECT_EQ(sac_decoder_open(nullptr, nullptr), SAC_INVALID_ARGUMENT);
   EXPECT_EQ(none, nullptr);

@@ -329,7 +329,7 @@ TEST(Damage, LimitsAreNone) {
   const Bytes stream = Encode(BendingClip(kFrames), Grouped()).bytes;
   DecoderSettings settings;
   settings.skip_damage = true;
-  settings.limits.frames_per_group = kGroup - 1;
+  settings.limits.expert.frames_per_group = kGroup - 1;
   EXPECT_EQ(Decode(stream, stream.size(), settings).status.code(), StatusCode::kLimit);
 }
 

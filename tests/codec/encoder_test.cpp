@@ -127,8 +127,8 @@ TEST(Encoder, KeepsToTheLimitsOfDecoders) {
   std::unique_ptr<Encoder> encoder;
   ASSERT_TRUE(Encoder::Create(clip.mesh, settings, encoder).ok());
   const std::uint32_t usual = encoder->info().harmonics;
-  settings.limits.free_work = 2e6;  // too little for so many
-  settings.limits.work_per_byte = 0;
+  settings.limits.expert.free_work = 2e6;  // too little for so many
+  settings.limits.expert.work_per_byte = 0;
   ASSERT_TRUE(Encoder::Create(clip.mesh, settings, encoder).ok());
   EXPECT_LT(encoder->info().harmonics, usual);
   DecoderSettings decoder;

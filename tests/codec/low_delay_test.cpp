@@ -175,9 +175,9 @@ TEST(LowDelay, MutatedFramesAreHarmless) {
 TEST(LowDelay, LimitsAreRespected) {
   const Bytes stream = Encode(BendingClip(6), LowDelay()).bytes;  // groups of 5
   DecoderSettings settings;
-  settings.limits.frames_per_group = 5;
+  settings.limits.expert.frames_per_group = 5;
   EXPECT_TRUE(Decode(stream, stream.size(), settings).status.ok());
-  settings.limits.frames_per_group = 4;
+  settings.limits.expert.frames_per_group = 4;
   const Decoded few = Decode(stream, stream.size(), settings);
   EXPECT_EQ(few.status.code(), StatusCode::kLimit);
   EXPECT_EQ(few.frames.size(), 4u);

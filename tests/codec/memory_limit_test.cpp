@@ -154,7 +154,7 @@ TEST(MemoryLimit, HoldsOfWhatIsSearchedAndOfAnIndex) {
   limits.memory = kLimit;
   EXPECT_EQ(ReadIndex(end, limits, index, needed).code(), StatusCode::kLimit);
   limits = {};
-  limits.packet_bytes = 1000;
+  limits.expert.packet_bytes = 1000;
   EXPECT_EQ(ReadIndex(end, limits, index, needed).code(), StatusCode::kInvalidArgument);
 }
 

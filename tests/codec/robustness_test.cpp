@@ -46,11 +46,11 @@ std::vector<Bytes> Streams() {
 DecoderSettings Small() {
   DecoderSettings settings;
   settings.limits.vertices = 200;
-  settings.limits.triangles = 400;
-  settings.limits.harmonics = 100;
-  settings.limits.frames_per_group = 64;
-  settings.limits.packet_bytes = 1 << 16;
-  settings.limits.basis_values = 20000;
+  settings.limits.expert.triangles = 400;
+  settings.limits.expert.harmonics = 100;
+  settings.limits.expert.frames_per_group = 64;
+  settings.limits.expert.packet_bytes = 1 << 16;
+  settings.limits.expert.basis_values = 20000;
   return settings;
 }
 
@@ -226,39 +226,47 @@ TEST(Robustness, LimitsAreRespected) {
   const Bytes stream = Streams()[0];  // 20 vertices, 30 triangles, 20 harmonics, groups of 3
   std::size_t longest = 0;
   for (const Packet& p : Packets(stream)) longest = std::max(longest, p.payload.size());
+  const auto decode = [&](const DecoderSettings& settings) {
+    return Decode(stream, stream.size(), settings).status.code();
+  };
   const auto with = [&](auto Limits::*limit, auto value) {
     DecoderSettings settings;
     settings.limits.*limit = value;
-    return Decode(stream, stream.size(), settings).status.code();
+    return decode(settings);
+  };
+  const auto with_expert = [&](auto ExpertLimits::*limit, auto value) {
+    DecoderSettings settings;
+    settings.limits.expert.*limit = value;
+    return decode(settings);
   };
   EXPECT_EQ(with(&Limits::vertices, 20u), StatusCode::kOk);
   EXPECT_EQ(with(&Limits::vertices, 19u), StatusCode::kLimit);
-  EXPECT_EQ(with(&Limits::triangles, 30u), StatusCode::kOk);
-  EXPECT_EQ(with(&Limits::triangles, 29u), StatusCode::kLimit);
-  EXPECT_EQ(with(&Limits::harmonics, 20u), StatusCode::kOk);
-  EXPECT_EQ(with(&Limits::harmonics, 19u), StatusCode::kLimit);
-  EXPECT_EQ(with(&Limits::basis_values, std::uint64_t{400}), StatusCode::kOk);
-  EXPECT_EQ(with(&Limits::basis_values, std::uint64_t{399}), StatusCode::kLimit);
-  EXPECT_EQ(with(&Limits::factor_values, std::uint64_t{400}), StatusCode::kOk);
-  EXPECT_EQ(with(&Limits::factor_values, std::uint64_t{40}), StatusCode::kLimit);
+  EXPECT_EQ(with_expert(&ExpertLimits::triangles, 30u), StatusCode::kOk);
+  EXPECT_EQ(with_expert(&ExpertLimits::triangles, 29u), StatusCode::kLimit);
+  EXPECT_EQ(with_expert(&ExpertLimits::harmonics, 20u), StatusCode::kOk);
+  EXPECT_EQ(with_expert(&ExpertLimits::harmonics, 19u), StatusCode::kLimit);
+  EXPECT_EQ(with_expert(&ExpertLimits::basis_values, std::uint64_t{400}), StatusCode::kOk);
+  EXPECT_EQ(with_expert(&ExpertLimits::basis_values, std::uint64_t{399}), StatusCode::kLimit);
+  EXPECT_EQ(with_expert(&ExpertLimits::factor_values, std::uint64_t{400}), StatusCode::kOk);
+  EXPECT_EQ(with_expert(&ExpertLimits::factor_values, std::uint64_t{40}), StatusCode::kLimit);
   EXPECT_EQ(with(&Limits::memory, std::uint64_t{100000}), StatusCode::kOk);
   EXPECT_EQ(with(&Limits::memory, std::uint64_t{20000}), StatusCode::kLimit);
-  EXPECT_EQ(with(&Limits::basis_work, 1e6), StatusCode::kOk);
-  EXPECT_EQ(with(&Limits::basis_work, 1e4), StatusCode::kLimit);
-  EXPECT_EQ(with(&Limits::frame_work, 1e5), StatusCode::kOk);
-  EXPECT_EQ(with(&Limits::frame_work, 1e3), StatusCode::kLimit);
-  EXPECT_EQ(with(&Limits::frames_per_group, 3u), StatusCode::kOk);
-  EXPECT_EQ(with(&Limits::frames_per_group, 2u), StatusCode::kLimit);
-  EXPECT_EQ(with(&Limits::packet_bytes, static_cast<std::uint32_t>(longest)), StatusCode::kOk);
-  EXPECT_EQ(with(&Limits::packet_bytes, static_cast<std::uint32_t>(longest - 1)), StatusCode::kLimit);
+  EXPECT_EQ(with(&Limits::work, 1e6), StatusCode::kOk);
+  EXPECT_EQ(with(&Limits::work, 1e4), StatusCode::kLimit);
+  EXPECT_EQ(with_expert(&ExpertLimits::frame_work, 1e5), StatusCode::kOk);
+  EXPECT_EQ(with_expert(&ExpertLimits::frame_work, 1e3), StatusCode::kLimit);
+  EXPECT_EQ(with_expert(&ExpertLimits::frames_per_group, 3u), StatusCode::kOk);
+  EXPECT_EQ(with_expert(&ExpertLimits::frames_per_group, 2u), StatusCode::kLimit);
+  EXPECT_EQ(with_expert(&ExpertLimits::packet_bytes, static_cast<std::uint32_t>(longest)), StatusCode::kOk);
+  EXPECT_EQ(with_expert(&ExpertLimits::packet_bytes, static_cast<std::uint32_t>(longest - 1)), StatusCode::kLimit);
 }
 
 TEST(Robustness, WorkIsBoundedByBytes) {
   const Bytes stream = Streams()[0];
   const auto with = [&](double free, double per_byte) {
     DecoderSettings settings;
-    settings.limits.free_work = free;
-    settings.limits.work_per_byte = per_byte;
+    settings.limits.expert.free_work = free;
+    settings.limits.expert.work_per_byte = per_byte;
     return Decode(stream, stream.size(), settings).status.code();
   };
   EXPECT_EQ(with(1e6, 0), StatusCode::kOk);

@@ -32,8 +32,9 @@ TEST(VertexBuffer, FillsWhatIsWanted) {
   shorts.normals = {vertices.data()->normal, bytes - offsetof(Vertex, normal), sizeof(Vertex), VertexFormat::kInt16};
   ASSERT_TRUE(CheckBuffers(floats, p.size()).ok());
   ASSERT_TRUE(CheckBuffers(shorts, p.size()).ok());
-  FillBuffers(p, clip.mesh.triangles, box, floats);
-  FillBuffers(p, clip.mesh.triangles, box, shorts);
+  NormalField field;
+  FillBuffers(p, clip.mesh.triangles, box, floats, field);
+  FillBuffers(p, clip.mesh.triangles, box, shorts, field);
   const std::vector<Vec3f> normals = VertexNormals(p, clip.mesh.triangles);
   for (std::size_t v = 0; v < p.size(); ++v) {
     EXPECT_EQ(std::memcmp(vertices[v].position, p[v].data(), 12), 0);

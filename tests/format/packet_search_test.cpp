@@ -68,7 +68,7 @@ TEST(PacketSearch, TakesWhatIsCompleteFirst) {
 TEST(PacketSearch, PassesOverWhatItDoesNotLookFor) {
   const Bytes i_frame = WritePacket(PacketType::kIFrame, Bytes(20, 7));
   Limits limits;
-  limits.packet_bytes = 30;
+  limits.expert.packet_bytes = 30;
   const Bytes large = WritePacket(PacketType::kGroup, Bytes(31, 1)),
               good = WritePacket(PacketType::kHeader, Bytes(30, 2));
   Packet found;

@@ -122,7 +122,7 @@ TEST(Packet, AMalformedSizeIsRefused) {
 
 TEST(Packet, OverTheLimitIsRefusedBeforeItArrives) {
   Limits limits;
-  limits.packet_bytes = 100;
+  limits.expert.packet_bytes = 100;
   Bytes fits = Magic(), exceeds = Magic();
   Append(fits, WritePacket(PacketType::kGroup, Payload(100, 1)));
   Append(exceeds, WritePacket(PacketType::kGroup, Payload(101, 1)));

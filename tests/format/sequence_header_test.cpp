@@ -66,7 +66,7 @@ TEST(SequenceHeader, ExtremesComeBack) {
   h.cell = h.motion_step = FLT_TRUE_MIN;
   h.displacement_step = h.rotation_step = h.translation_step = FLT_MAX;
   Limits limits;
-  limits.vertices = limits.triangles = 0xffffffffu;
+  limits.vertices = limits.expert.triangles = 0xffffffffu;
   limits.memory = ~std::uint64_t{0};
   ExpectRoundTrip(h, limits);
 
@@ -128,7 +128,7 @@ TEST(SequenceHeader, AnotherVersionIsUnsupportedWhateverFollows) {
 TEST(SequenceHeader, LimitsAreRespected) {
   Limits limits;
   limits.vertices = 1000;
-  limits.triangles = 1996;
+  limits.expert.triangles = 1996;
   EXPECT_TRUE(Parse(Valid(), limits).ok());
   SequenceHeader h = Valid();
   h.vertices = 1001;

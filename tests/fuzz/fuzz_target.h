@@ -26,18 +26,18 @@ namespace sac {
 inline Limits FuzzLimits() {
   Limits limits;
   limits.vertices = 200;
-  limits.triangles = 400;
-  limits.harmonics = 60;
-  limits.frames_per_group = 32;
-  limits.packet_bytes = 1 << 16;
-  limits.group_values = 1 << 17;
-  limits.basis_values = 1 << 14;
-  limits.factor_values = 1 << 14;
+  limits.expert.triangles = 400;
+  limits.expert.harmonics = 60;
+  limits.expert.frames_per_group = 32;
+  limits.expert.packet_bytes = 1 << 16;
+  limits.expert.group_values = 1 << 17;
+  limits.expert.basis_values = 1 << 14;
+  limits.expert.factor_values = 1 << 14;
   limits.memory = 1 << 24;
-  limits.basis_work = 2e7;
-  limits.free_work = 1e7;
-  limits.work_per_byte = 1e4;
-  limits.frame_work = 1e6;
+  limits.work = 2e7;
+  limits.expert.free_work = 1e7;
+  limits.expert.work_per_byte = 1e4;
+  limits.expert.frame_work = 1e6;
   return limits;
 }
 

@@ -30,16 +30,16 @@ using namespace sac;
 Limits VectorLimits() {
   Limits limits;
   limits.vertices = 4000;
-  limits.triangles = 8000;
-  limits.harmonics = 200;
-  limits.frames_per_group = 2000;
-  limits.packet_bytes = 1 << 16;
-  limits.group_values = 1 << 20;
-  limits.basis_values = 1 << 18;
-  limits.factor_values = 1 << 18;
+  limits.expert.triangles = 8000;
+  limits.expert.harmonics = 200;
+  limits.expert.frames_per_group = 2000;
+  limits.expert.packet_bytes = 1 << 16;
+  limits.expert.group_values = 1 << 20;
+  limits.expert.basis_values = 1 << 18;
+  limits.expert.factor_values = 1 << 18;
   limits.memory = 1 << 26;
-  limits.basis_work = limits.free_work = 5e8;
-  limits.frame_work = 1e7;
+  limits.work = limits.expert.free_work = 5e8;
+  limits.expert.frame_work = 1e7;
   return limits;
 }
 

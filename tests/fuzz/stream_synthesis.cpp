@@ -148,7 +148,7 @@ bool Resynthesize(std::vector<Packet>& packets, std::mt19937& random) {
   h.vertices = static_cast<std::uint32_t>(draco.entries - std::min<std::size_t>(s.welds.size(), draco.entries) +
                                           s.loose_vertices.size());
   h.triangles = static_cast<std::uint32_t>(draco.triangles.size() + s.loose_triangles.size());
-  if (h.vertices == 0 || h.vertices > limits.vertices || h.triangles > limits.triangles) return false;
+  if (h.vertices == 0 || h.vertices > limits.vertices || h.triangles > limits.expert.triangles) return false;
   for (auto& t : s.loose_triangles) {
     for (std::uint32_t& v : t) v %= h.vertices;
   }
