@@ -1,66 +1,15 @@
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <algorithm>
-#include <cerrno>
-#include <csignal>
-#include <cstdio>
-#include <cstring>
-#include <exception>
-#include <iostream>
-#include <new>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include "cli/commands.h"
-#include "files/temporary_files.h"
+#include "cli/program.h"
 #include "sac/version.h"
 
-namespace sac {
 namespace {
 
-enum ExitCode { kOk = 0, kDataError = 1, kUsageError = 2 };
-
-// A file must not become standard output, and be written to, because that was closed.
-void OccupyStandardStreams() {
-  for (const int fd : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    // The lowest free number is taken; reading from or writing to it is an error as before.
-    if (fcntl(fd, F_GETFD) < 0) (void)!open("/dev/null", fd == STDIN_FILENO ? O_WRONLY : O_RDONLY);
-  }
-}
-
-ExitCode Fail(ExitCode code, std::string message) {
-  std::replace(message.begin(), message.end(), '\n', ' ');
-  std::fflush(stdout);
-  std::fprintf(stderr, "sac: %s\n", message.c_str());
-  return code;
-}
-
-// Also of a report that did not fit on the disk.
-ExitCode FlushOutput(ExitCode code) {
-  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  return Fail(kDataError, std::string("standard output: ") + std::strerror(errno));
-}
-
-// CLI11 prints a description as it is; breaks the lines of those of options.
-void WrapDescriptions(CLI::App& app) {
-  constexpr std::size_t kColumns = 80;
-  for (CLI::Option* option : app.get_options()) {
-    std::istringstream words(option->get_description());
-    std::string word, text;
-    for (std::size_t column = 0; words >> word; column += word.size() + 1) {
-      if (!text.empty()) text += column + word.size() > kColumns ? '\n' : ' ';
-      if (column + word.size() > kColumns) column = 0;
-      text += word;
-    }
-    option->description(text);
-  }
-}
-
-ExitCode Run(int argc, char** argv) {
-  CLI::App app("Streaming codec for animated triangle meshes.");
+std::vector<sac::Command> AddCommands(CLI::App& app) {
   app.name("sac");
+  app.description("Streaming codec for animated triangle meshes.");
   app.set_version_flag("--version", "sac " SAC_VERSION_STRING ", stream format " SAC_STREAM_VERSION_STRING);
   app.require_subcommand(1);
   app.footer(
@@ -70,45 +19,10 @@ ExitCode Run(int argc, char** argv) {
       "  sac encode body.obj walk.pc2 -o walk.sac\n"
       "  sac info walk.sac\n"
       "  sac decode walk.sac -o frame_%04d.obj\n");
-  const std::vector<Command> commands{AddEncodeCommand(app), AddDecodeCommand(app),  AddInfoCommand(app),
-                                      AddVerifyCommand(app), AddCompareCommand(app), AddSynthCommand(app),
-                                      AddSweepCommand(app)};
-  for (CLI::App* command : app.get_subcommands(nullptr)) WrapDescriptions(*command);
-  const auto chosen = [&] {
-    return std::find_if(commands.begin(), commands.end(), [](const Command& c) { return c.app->parsed(); });
-  };
-  const auto usage_error = [&](const std::string& message) {
-    const std::string name = chosen() == commands.end() ? "" : chosen()->app->get_name() + " ";
-    return Fail(kUsageError, message + " (see sac " + name + "--help)");
-  };
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::Success& request) {  // --help, --version
-    app.exit(request);
-    std::cout.flush();
-    return kOk;
-  } catch (const CLI::ParseError& error) {
-    return usage_error(error.what());
-  }
-  if (const Status status = chosen()->check(); !status.ok()) return usage_error(status.message());
-  const Status status = chosen()->run();
-  return status.ok() ? kOk : Fail(kDataError, status.message());
+  return {sac::AddEncodeCommand(app),  sac::AddDecodeCommand(app), sac::AddInfoCommand(app), sac::AddVerifyCommand(app),
+          sac::AddCompareCommand(app), sac::AddSynthCommand(app),  sac::AddSweepCommand(app)};
 }
 
 }  // namespace
-}  // namespace sac
 
-int main(int argc, char** argv) {
-  // A write that cannot be done then fails, and is reported.
-  std::signal(SIGPIPE, SIG_IGN);
-  std::signal(SIGXFSZ, SIG_IGN);
-  sac::OccupyStandardStreams();
-  try {
-    sac::RemoveTemporaryFilesOnSignals();
-    return sac::FlushOutput(sac::Run(argc, argv));
-  } catch (const std::bad_alloc&) {
-    return sac::Fail(sac::kDataError, "not enough memory");
-  } catch (const std::exception& error) {
-    return sac::Fail(sac::kDataError, error.what());
-  }
-}
+int main(int argc, char** argv) { return sac::RunProgram(argc, argv, AddCommands); }

@@ -6,6 +6,7 @@
 
 #include "bench/sweep/child_process.h"
 #include "bench/sweep/content_key.h"
+#include "cli/program.h"
 #include "sac/version.h"
 
 namespace sac {
@@ -13,21 +14,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Status ThisProgram(std::string& path) {
-  std::error_code error;
-  path = fs::read_symlink("/proc/self/exe", error).string();
-  return error ? Status::IoError("/proc/self/exe: " + error.message()) : Status::Ok();
-}
-
 std::string FindProgram(const std::string& program, const std::string& directory) {
-  std::string sac;
-  std::vector<fs::path> places;
-  if (!directory.empty()) {
-    places = {fs::absolute(directory)};
-  } else if (ThisProgram(sac).ok()) {
-    const fs::path here = fs::path(sac).parent_path();
-    places = {here, here / "../libexec/sac", here / "../bench/peers"};
-  }
+  const fs::path here = fs::path(ThisProgram()).parent_path();
+  std::vector<fs::path> places{here, here / "../peers"};
+  if (!directory.empty()) places = {fs::absolute(directory)};
   for (const fs::path& place : places) {
     std::error_code error;
     if (fs::is_regular_file(place / program, error)) return fs::weakly_canonical(place / program).string();
@@ -71,11 +61,12 @@ const std::vector<std::string>& PeerNames() {
   return names;
 }
 
-Status SacCodecs(const std::vector<std::string>& qualities, const std::vector<std::string>& max_errors,
-                 const std::vector<std::string>& variants, std::vector<SweepCodec>& codecs) {
+Status SacCodecs(const std::string& program, const std::vector<std::string>& qualities,
+                 const std::vector<std::string>& max_errors, const std::vector<std::string>& variants,
+                 std::vector<SweepCodec>& codecs) {
   SweepCodec sac;
   sac.version = SAC_VERSION_STRING;
-  SAC_RETURN_IF_ERROR(ThisProgram(sac.program));
+  sac.program = program;
   SAC_RETURN_IF_ERROR(KeyOfFile(sac.program, sac.program_key));
   const auto add = [&](const std::string& name, const std::string& title, const std::string& what, const char* option,
                        const std::vector<std::string>& values, const char* unit, const std::string& more) {
@@ -103,7 +94,7 @@ SweepCodec FindPeer(const std::string& name, const std::string& directory) {
   const std::string program = "sac-peer-" + name;
   codec.program = FindProgram(program, directory);
   if (codec.program.empty()) {
-    codec.missing = "there is no program " + program + (directory.empty() ? " beside sac" : " in " + directory);
+    codec.missing = "there is no program " + program + (directory.empty() ? " beside sac-sweep" : " in " + directory);
     return codec;
   }
   ProcessUsage usage;

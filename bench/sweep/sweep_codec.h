@@ -29,13 +29,14 @@ struct SweepCodec {
 // What `sac sweep --peers` knows, in the order of a report: names of programs sac-peer-NAME.
 const std::vector<std::string>& PeerNames();
 
-// sac itself: a curve of qualities, one of bounds on the error (in diagonals) where there are any, and for each of
-// `variants`, words of options for `sac encode`, one more curve of the qualities.
-Status SacCodecs(const std::vector<std::string>& qualities, const std::vector<std::string>& max_errors,
-                 const std::vector<std::string>& variants, std::vector<SweepCodec>& codecs);
+// sac itself, the command `program`: a curve of qualities, one of bounds on the error (in diagonals) where there are
+// any, and for each of `variants`, words of options for `sac encode`, one more curve of the qualities.
+Status SacCodecs(const std::string& program, const std::vector<std::string>& qualities,
+                 const std::vector<std::string>& max_errors, const std::vector<std::string>& variants,
+                 std::vector<SweepCodec>& codecs);
 
 // The peer of a name, asked what it is and which settings it has (`PROGRAM describe`). A program that is neither in
-// `directory`, where that is given, nor beside sac nor where a build of sac has it makes a codec that is missing.
+// `directory`, where that is given, nor beside this program nor where a build has it makes a codec that is missing.
 SweepCodec FindPeer(const std::string& name, const std::string& directory);
 
 }  // namespace sac
