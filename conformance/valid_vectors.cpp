@@ -1,112 +1,13 @@
 #include "conformance/valid_vectors.h"
 
-#include <cmath>
-#include <cstdio>
-#include <cstdlib>
+#include <array>
 #include <random>
 
+#include "conformance/vector_clips.h"
 #include "format/stream_index.h"
-#include "synth/synth.h"
 
 namespace sac {
 namespace {
-
-Clip Synth(SynthKind kind, std::uint32_t vertices, std::uint32_t frames) {
-  SynthClip synth;
-  if (const Status status = SynthClip::Create({kind, vertices, frames, 1}, synth); !status.ok()) {
-    std::fprintf(stderr, "make_vectors: %s\n", status.message().c_str());
-    std::exit(1);
-  }
-  Clip clip{synth.mesh(), {}};
-  for (std::uint32_t f = 0; f < frames; ++f) clip.frames.push_back(synth.Frame(f));
-  return clip;
-}
-
-// Frames that wave the mesh and turn it.
-Clip Wave(const Mesh& mesh, std::uint32_t frames) {
-  Clip clip{mesh, {}};
-  for (std::uint32_t f = 0; f < frames; ++f) {
-    const double t = 0.2 * f;
-    Positions& positions = clip.frames.emplace_back(mesh.positions);
-    for (Vec3f& p : positions) {
-      const double x = static_cast<double>(p[0]), y = static_cast<double>(p[1]), z = static_cast<double>(p[2]);
-      p = {static_cast<float>(x * std::cos(t) - y * std::sin(t)), static_cast<float>(x * std::sin(t) + y * std::cos(t)),
-           static_cast<float>(z + 0.3 * std::sin(t) * x * x)};
-    }
-  }
-  return clip;
-}
-
-// All that Draco cannot keep: two fans joined at one vertex, three triangles at an edge, a loose vertex, a degenerate
-// and a duplicate triangle, one turned around; with all attributes and a seam of texture coordinates.
-Mesh OddMesh() {
-  Mesh mesh;
-  mesh.positions = {{0, 0, 0},     {1, 0, 0},    {1, 1, 0},     {0, 1, 0},        {-1, 0, 0},     {-1, -1, 0.5f},
-                    {0, -1, 0.5f}, {2, 0.5f, 1}, {2, 0.5f, -1}, {0.5f, 2, 0.25f}, {1.5f, 2, 0.5f}};
-  mesh.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 4, 5}, {0, 5, 6}, {1, 2, 7},   {2, 1, 8},
-                    {3, 2, 9}, {3, 3, 2}, {0, 1, 2}, {2, 9, 3}, {10, 10, 10}};
-  for (std::size_t v = 0; v < mesh.positions.size(); ++v) {
-    const auto i = static_cast<std::uint8_t>(v);
-    mesh.normals.push_back(v % 2 ? Vec3f{0, 0, 1} : Vec3f{0.6f, 0, 0.8f});
-    mesh.colors.push_back({static_cast<std::uint8_t>(20 * i), 100, static_cast<std::uint8_t>(255 - i), 255});
-  }
-  for (std::size_t i = 0; i < 12; ++i) mesh.uvs.push_back({static_cast<float>(i) / 11, static_cast<float>(i % 3) / 2});
-  for (const Triangle& t : mesh.triangles) mesh.uv_triangles.push_back(t);
-  mesh.uv_triangles[1] = {0, 2, 11};  // the seam
-  return mesh;
-}
-
-// More neighbours, and more triangles at an edge, than the code of positions looks at (spec.md 5.5): double cones
-// around 31, 32 and 33 vertices, joined to each other, a book of 25 pages, and triangles at random.
-Mesh CrowdedMesh() {
-  Mesh mesh;
-  std::mt19937 random(2);
-  const auto jitter = [&] { return static_cast<float>(random() % 1000) / 1000; };
-  const auto size = [&] { return static_cast<std::uint32_t>(mesh.positions.size()); };
-  for (std::uint32_t ring = 31; ring <= 33; ++ring) {
-    const std::uint32_t top = size(), bottom = top + 1, first = top + 2;
-    const float x = 3 * static_cast<float>(ring - 31);
-    mesh.positions.insert(mesh.positions.end(), {{x, 0, 1}, {x, 0, -1}});
-    for (std::uint32_t i = 0; i < ring; ++i) {
-      const float turn = 6.2831853f * static_cast<float>(i) / static_cast<float>(ring);
-      mesh.positions.push_back({x + std::cos(turn), std::sin(turn), 0.1f * jitter()});
-      const std::uint32_t a = first + i, b = first + (i + 1) % ring;
-      mesh.triangles.insert(mesh.triangles.end(), {{top, a, b}, {bottom, b, a}});
-    }
-    if (ring > 31) mesh.triangles.push_back({top + 2, top - 1, top - 2});
-  }
-  const std::uint32_t spine = size();
-  mesh.positions.insert(mesh.positions.end(), {{0, 3, 0}, {0, 3, 1}});
-  for (std::uint32_t page = 0; page < 25; ++page) {
-    const float turn = 0.25f * static_cast<float>(page), length = 1 + jitter();
-    mesh.triangles.push_back({spine, spine + 1, size()});
-    if (page > 0) mesh.triangles.push_back({size() - 1, size(), spine});
-    mesh.positions.push_back({length * std::cos(turn), 3 + length * std::sin(turn), jitter()});
-  }
-  const std::uint32_t tangle = size();
-  for (int i = 0; i < 30; ++i) mesh.positions.push_back({3 + jitter(), 3 + jitter(), jitter()});
-  for (int i = 0; i < 120; ++i) {
-    Triangle& t = mesh.triangles.emplace_back();
-    for (std::uint32_t& corner : t) corner = tangle + random() % 30;
-  }
-  return mesh;
-}
-
-// The first frame again and again, then motion, then its last frame again and again.
-Clip StandStill() {
-  Clip clip = Synth(SynthKind::kFlag, 120, 12);
-  clip.frames.insert(clip.frames.begin(), 9, clip.frames.front());
-  clip.frames.insert(clip.frames.end(), 9, clip.frames.back());
-  return clip;
-}
-
-Clip Cuts() {
-  Clip clip = Synth(SynthKind::kParts, 200, 24);
-  for (std::size_t f = 8; f < 16; ++f) {
-    for (Vec3f& p : clip.frames[f]) p = {p[1] + 3, -p[0], 0.5f * p[2]};
-  }
-  return clip;
-}
 
 // Residuals that no encoder would choose: of any magnitude, predicted from anything.
 void FillAtRandom(std::mt19937& random, const References* references, std::uint32_t index, FrameSyntax& frame) {
@@ -280,18 +181,34 @@ Bytes PerversePrevious() {
   return parts.Join();
 }
 
-}  // namespace
+void Add(std::vector<ValidVector>& vectors, const char* name, const char* covers, const Clip& clip,
+         EncoderSettings settings, double quality = 30) {
+  settings.quality = quality;
+  vectors.push_back({name, covers, Encode(clip, settings)});
+}
 
-std::vector<ValidVector> ValidVectors() {
-  std::vector<ValidVector> vectors;
-  const auto encode = [&](const char* name, const char* covers, const Clip& clip, EncoderSettings settings,
-                          double quality = 30) {
-    settings.quality = quality;
-    vectors.push_back({name, covers, Encode(clip, settings)});
-  };
-  EncoderSettings s;
-  s.harmonics = 24;
+EncoderSettings Harmonics(std::uint32_t harmonics) {
+  EncoderSettings settings;
+  settings.harmonics = harmonics;
+  return settings;
+}
 
+EncoderSettings Chain() {
+  EncoderSettings settings = Harmonics(24);
+  settings.pyramid = 1;
+  settings.group = 8;
+  return settings;
+}
+
+EncoderSettings Previous() {
+  EncoderSettings settings = Harmonics(24);
+  settings.reference_shape = ReferenceShape::kPrevious;
+  settings.group = 10;
+  return settings;
+}
+
+// Streams of groups, references and meshes of all kinds.
+void AddStructures(std::vector<ValidVector>& vectors) {
   vectors.push_back({"small", "spec.md appendix A: no Draco mesh, 3 frames in a pyramid", SmallStream().Join()});
   {
     StreamParts none = SmallStream();
@@ -300,85 +217,96 @@ std::vector<ValidVector> ValidVectors() {
     vectors.push_back({"no_frames", "no groups", none.Join()});
   }
 
-  EncoderSettings pyramids = s;
+  EncoderSettings pyramids = Harmonics(24);
   pyramids.group = 20;
   pyramids.pyramid = 8;
-  encode("pyramids", "B-frames, several groups, the last one short, reduced basis", Synth(SynthKind::kFlag, 200, 45),
-         pyramids);
-  EncoderSettings chain = s;
-  chain.pyramid = 1;
-  chain.group = 8;
-  encode("chain", "P-frames only, texture coordinates, boundary", Synth(SynthKind::kFlag, 200, 12), chain);
-  EncoderSettings previous = s;
-  previous.reference_shape = ReferenceShape::kPrevious;
-  previous.group = 10;
-  encode("previous", "reference shape of the frame before", Synth(SynthKind::kFlag, 200, 16), previous);
-  EncoderSettings exact = s;
+  Add(vectors, "pyramids", "B-frames, several groups, the last one short, reduced basis",
+      Synth(SynthKind::kFlag, 200, 45), pyramids);
+  Add(vectors, "chain", "P-frames only, texture coordinates, boundary", Synth(SynthKind::kFlag, 200, 12), Chain());
+  Add(vectors, "previous", "reference shape of the frame before", Synth(SynthKind::kFlag, 200, 16), Previous());
+  EncoderSettings exact = Harmonics(24);
   exact.samples_per_harmonic = 0;
   exact.position_bits = 7;
-  encode("exact", "exact harmonics of a symmetric shape, normals", Synth(SynthKind::kSphere, 160, 20), exact);
-  EncoderSettings kept = s;
+  Add(vectors, "exact", "exact harmonics of a symmetric shape, normals", Synth(SynthKind::kSphere, 160, 20), exact);
+  EncoderSettings kept = Harmonics(24);
   kept.keep_order = true;
-  encode("components", "many components, colours, kept order", Synth(SynthKind::kParts, 200, 20), kept);
-  encode("seam", "texture coordinates with a seam, kept order", Synth(SynthKind::kVase, 200, 10), kept);
-  encode("odd", "welds, loose vertices and triangles, all attributes, kept order", Wave(OddMesh(), 12), kept, 60);
-  encode("crowded", "vertices of more than 32 edges, edges of many triangles", Wave(CrowdedMesh(), 3), s, 60);
-  encode("stand_still", "frames that repeat, within a group and across groups", StandStill(), pyramids);
-  encode("cuts", "intra frames within a group", Cuts(), pyramids);
-  EncoderSettings detail = s;
-  detail.harmonics = 20;
+  Add(vectors, "components", "many components, colours, kept order", Synth(SynthKind::kParts, 200, 20), kept);
+  Add(vectors, "seam", "texture coordinates with a seam, kept order", Synth(SynthKind::kVase, 200, 10), kept);
+  Add(vectors, "odd", "welds, loose vertices and triangles, all attributes, kept order", Wave(OddMesh(), 12), kept, 60);
+  Add(vectors, "crowded", "vertices of more than 32 edges, edges of many triangles", Wave(CrowdedMesh(), 3),
+      Harmonics(24), 60);
+  Add(vectors, "stand_still", "frames that repeat, within a group and across groups", StandStill(), pyramids);
+  Add(vectors, "cuts", "intra frames within a group", Cuts(), pyramids);
+}
+
+// Streams of all planes.
+void AddPlanes(std::vector<ValidVector>& vectors) {
+  EncoderSettings detail = Harmonics(20);
   detail.detail_step = 0.003;
-  encode("detail", "a detail plane", Synth(SynthKind::kFlag, 205, 6), detail);
-  EncoderSettings bounded = s;
-  bounded.harmonics = 20;
+  Add(vectors, "detail", "a detail plane", Synth(SynthKind::kFlag, 205, 6), detail);
+  EncoderSettings bounded = Harmonics(20);
   bounded.max_error = 0.01;
-  encode("bounded", "a correction plane", Synth(SynthKind::kParts, 150, 8), bounded);
+  Add(vectors, "bounded", "a correction plane", Synth(SynthKind::kParts, 150, 8), bounded);
   vectors.push_back({"rows", "all planes of more than 1,024 rows, as many components", Rows()});
-  EncoderSettings everything = previous;
+  EncoderSettings everything = Previous();
   everything.detail_step = 0.01;
   everything.max_error = 0.02;
-  encode("previous_everything", "all planes against the frame before", Synth(SynthKind::kFlag, 100, 8), everything);
-  encode("one_frame", "a single frame", Synth(SynthKind::kSphere, 100, 1), s);
+  Add(vectors, "previous_everything", "all planes against the frame before", Synth(SynthKind::kFlag, 100, 8),
+      everything);
+  Add(vectors, "one_frame", "a single frame", Synth(SynthKind::kSphere, 100, 1), Harmonics(24));
+}
 
-  EncoderSettings groups_of_one = s;
+// Streams of the least and the most that settings and meshes allow.
+void AddExtremes(std::vector<ValidVector>& vectors) {
+  EncoderSettings groups_of_one = Harmonics(24);
   groups_of_one.group = 1;
-  encode("groups_of_one", "key frames only", Synth(SynthKind::kFlag, 100, 4), groups_of_one);
+  Add(vectors, "groups_of_one", "key frames only", Synth(SynthKind::kFlag, 100, 4), groups_of_one);
   Mesh points;
   points.positions = {{0, 0, 0}, {1, 2, 3}, {-1, 0, 0.5f}};
-  encode("points", "vertices without triangles", Wave(points, 6), s, 60);
+  Add(vectors, "points", "vertices without triangles", Wave(points, 6), Harmonics(24), 60);
   Mesh point;
   point.positions = {{5, 6, 7}};
-  encode("one_vertex", "one vertex", Wave(point, 3), s, 60);
-  EncoderSettings coarse = s;
+  Add(vectors, "one_vertex", "one vertex", Wave(point, 3), Harmonics(24), 60);
+  EncoderSettings coarse = Harmonics(24);
   coarse.position_bits = 1;
-  encode("coarse", "steps of half the extent: vertices at one position, degenerate areas",
-         Synth(SynthKind::kSphere, 60, 3), coarse);
-  EncoderSettings fine = s;
+  Add(vectors, "coarse", "steps of half the extent: vertices at one position, degenerate areas",
+      Synth(SynthKind::kSphere, 60, 3), coarse);
+  EncoderSettings fine = Harmonics(24);
   fine.position_bits = 24;
-  encode("fine", "a grid of 2^24 places, steps of one", Synth(SynthKind::kSphere, 60, 3), fine);
+  Add(vectors, "fine", "a grid of 2^24 places, steps of one", Synth(SynthKind::kSphere, 60, 3), fine);
+}
 
-  EncoderSettings low_delay = s;
+// Streams of open groups, and what no encoder would choose.
+void AddOpenGroups(std::vector<ValidVector>& vectors) {
+  EncoderSettings low_delay = Harmonics(24);
   low_delay.low_delay = true;
   low_delay.group = 6;
-  encode("low_delay", "open groups, the last one short, texture coordinates", Synth(SynthKind::kFlag, 200, 16),
-         low_delay);
+  Add(vectors, "low_delay", "open groups, the last one short, texture coordinates", Synth(SynthKind::kFlag, 200, 16),
+      low_delay);
   EncoderSettings low_delay_previous = low_delay;
   low_delay_previous.reference_shape = ReferenceShape::kPrevious;
-  encode("low_delay_previous", "an open group against the frame before", Synth(SynthKind::kFlag, 100, 5),
-         low_delay_previous);
+  Add(vectors, "low_delay_previous", "an open group against the frame before", Synth(SynthKind::kFlag, 100, 5),
+      low_delay_previous);
   vectors.push_back({"open_groups", "a whole group, open groups with explicit references, one empty", OpenGroups()});
   vectors.push_back({"repeated_start", "the start again between groups, an index, an empty group", RepeatedStart()});
-  EncoderSettings broadcast = chain;
+  EncoderSettings broadcast = Chain();
   broadcast.group = 3;
   broadcast.repeat_start = 2;
-  encode("broadcast", "the start again before every second group, a Draco mesh", Synth(SynthKind::kFlag, 100, 11),
-         broadcast);
+  Add(vectors, "broadcast", "the start again before every second group, a Draco mesh", Synth(SynthKind::kFlag, 100, 11),
+      broadcast);
   vectors.push_back({"perverse",
                      "explicit references of all kinds, all magnitudes, level growth 2, levels above 2, a pyramid much "
                      "longer than its group",
                      Perverse()});
   vectors.push_back({"deep", "levels to 10, steps at their bound of 4,096, large coefficients", Deep()});
   vectors.push_back({"perverse_previous", "the same against the frame before, with intra frames", PerversePrevious()});
+}
+
+}  // namespace
+
+std::vector<ValidVector> ValidVectors() {
+  std::vector<ValidVector> vectors;
+  for (const auto add : {AddStructures, AddPlanes, AddExtremes, AddOpenGroups}) add(vectors);
   return vectors;
 }
 
