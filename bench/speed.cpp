@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Encoding and decoding speed on one thread. The argument of a benchmark is the number of vertices asked for.
 #include <benchmark/benchmark.h>
 

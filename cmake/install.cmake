@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # cmake --install: libraries, public headers, a CMake package (find_package(sac COMPONENTS decoder encoder shared)) and
 # two pkg-config files: sac for C, which is the shared library where there is one, and sac-cxx for C++.
 include(CMakePackageConfigHelpers)

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # libsac is the interface of C and exports nothing else, so that its Eigen and Draco stay apart from the program's own. It
 # compiles that interface itself, with SAC_BUILDS_SHARED, which Windows needs for what it exports; the rest comes from
 # the static libraries.

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "codec/draco_decoder.h"
 
 #include <draco/core/varint_decoding.h>

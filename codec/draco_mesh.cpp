@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "codec/draco_mesh.h"
 
 #include <draco/compression/config/decoder_options.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decodes the vectors of conformance/ and compares with its manifest.
 #include <gtest/gtest.h>
 

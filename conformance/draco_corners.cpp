@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decodes a Draco mesh from standard input and writes what spec.md 5.1 takes of it to standard output, as JSON:
 //
 //   remaining   bytes behind the mesh

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <draco/compression/expert_encode.h>
 
 #include <cstdlib>

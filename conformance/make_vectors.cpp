@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes all conformance vectors and their manifest, and the examples of spec.md, appendix A, which is in the directory
 // above: make_vectors DIRECTORY. See README.md.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* A player without a picture: reads a stream from a file, in small pieces, and tells where a vertex goes. Twice, to
  * show how a clip is played again. */
 #include <sac/sac.h>

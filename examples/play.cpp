@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decodes a stream as its bytes arrive and says what it gets: play < clip.sac
 #include <cstdio>
 #include <iostream>

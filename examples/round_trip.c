@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Encodes a waving grid and decodes it again, through the interface of C alone. */
 #include <math.h>
 #include <sac/sac.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Draws every frame of a stream into a PNG, the camera going once around, without a display: Mesa's software renderer
  * draws into memory, libpng writes it. */
 #include <GL/osmesa.h>

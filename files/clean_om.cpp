@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <OpenMesh/Core/IO/OMFormat.hh>
 #include <cstdint>
 #include <string>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "files/mesh_file.h"
 
 #include <OpenMesh/Core/IO/reader/OFFReader.hh>

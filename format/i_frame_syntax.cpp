@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "format/i_frame_syntax.h"
 
 #include <bit>
@@ -51,86 +52,105 @@ bool CodeNear(Coder& coder, SignedModels& models, std::uint32_t expected, std::u
   return true;
 }
 
-// One body for both directions (spec.md 5.2). Returns the name of the malformed element or null.
+// The functions below are one body for both directions (spec.md 5.2). They return false when an element is malformed.
+
 template <class Coder>
-const char* CodeSide(Coder& coder, const SequenceHeader& header, IFrameSyntax& s) {
+bool CodeWelds(Coder& coder, const SequenceHeader& header, std::vector<Weld>& welds) {
   UnsignedModels gap, back;
   std::uint32_t next = 1;  // the smallest point that can be welded
-  if (!CodeList(coder, s.welds, 3 * static_cast<std::uint64_t>(header.triangles), [&](Weld& w) {
-        std::uint32_t skip = w.point - next, distance = w.point - w.onto - 1;
-        CodeUnsigned(coder, gap, skip);
-        CodeUnsigned(coder, back, distance);
-        const std::uint64_t point = static_cast<std::uint64_t>(next) + skip;
-        if (point >= 3 * static_cast<std::uint64_t>(header.triangles) || distance >= point) return false;
-        w = {static_cast<std::uint32_t>(point), static_cast<std::uint32_t>(point) - distance - 1};
-        next = w.point + 1;
-        return true;
-      })) {
-    return "welds";
-  }
-  CodeFlag(coder, s.has_normals);
-  CodeFlag(coder, s.has_colors);
+  const std::uint64_t points = 3 * static_cast<std::uint64_t>(header.triangles);
+  return CodeList(coder, welds, points, [&](Weld& w) {
+    std::uint32_t skip = w.point - next, distance = w.point - w.onto - 1;
+    CodeUnsigned(coder, gap, skip);
+    CodeUnsigned(coder, back, distance);
+    const std::uint64_t point = static_cast<std::uint64_t>(next) + skip;
+    if (point >= points || distance >= point) return false;
+    w = {static_cast<std::uint32_t>(point), static_cast<std::uint32_t>(point) - distance - 1};
+    next = w.point + 1;
+    return true;
+  });
+}
+
+template <class Coder>
+bool CodeLooseVertices(Coder& coder, const SequenceHeader& header, IFrameSyntax& s) {
   const std::uint32_t grid = 1u << header.position_bits;
   SignedModels coordinate[3];
   GridPosition last = {};
-  if (!CodeList(coder, s.loose_vertices, header.vertices, [&](LooseVertex& v) {
-        for (std::size_t a = 0; a < 3; ++a) {
-          if (!CodeNear(coder, coordinate[a], last[a], grid, v.position[a])) return false;
-        }
-        last = v.position;
-        if (s.has_normals) {
-          for (float& f : v.normal) CodeFloat(coder, f);
-        }
-        if (s.has_colors) {
-          for (std::uint8_t& c : v.color) {
-            std::uint32_t wide = c;
-            coder.Raw(wide, 8);
-            c = static_cast<std::uint8_t>(wide);
-          }
-        }
-        return true;
-      })) {
-    return "loose vertices";
-  }
+  return CodeList(coder, s.loose_vertices, header.vertices, [&](LooseVertex& v) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      if (!CodeNear(coder, coordinate[a], last[a], grid, v.position[a])) return false;
+    }
+    last = v.position;
+    if (s.has_normals) {
+      for (float& f : v.normal) CodeFloat(coder, f);
+    }
+    if (s.has_colors) {
+      for (std::uint8_t& c : v.color) {
+        std::uint32_t wide = c;
+        coder.Raw(wide, 8);
+        c = static_cast<std::uint8_t>(wide);
+      }
+    }
+    return true;
+  });
+}
+
+template <class Coder>
+bool CodeLooseTriangles(Coder& coder, const SequenceHeader& header, std::vector<Triangle>& triangles) {
   SignedModels corner;
   std::uint32_t near = 0;
-  if (!CodeList(coder, s.loose_triangles, header.triangles, [&](Triangle& t) {
-        for (std::uint32_t& v : t) {
-          if (!CodeNear(coder, corner, near, header.vertices, v)) return false;
-          near = v;
-        }
-        return true;
-      })) {
-    return "loose triangles";
-  }
-  SignedModels count_models;
+  return CodeList(coder, triangles, header.triangles, [&](Triangle& t) {
+    for (std::uint32_t& v : t) {
+      if (!CodeNear(coder, corner, near, header.vertices, v)) return false;
+      near = v;
+    }
+    return true;
+  });
+}
+
+template <class Coder>
+bool CodeHarmonics(Coder& coder, const SequenceHeader& header, std::vector<std::uint32_t>& harmonics) {
+  SignedModels models;
   std::uint32_t count = header.harmonics;
   std::uint64_t total = 0;
-  if (!CodeList(coder, s.harmonics, header.vertices,
-                [&](std::uint32_t& h) {
-                  const std::uint32_t expected = count;
-                  if (!CodeNear(coder, count_models, expected, header.harmonics + 1, h) || h == 0) return false;
-                  count = h;
-                  total += h;
-                  return total <= header.harmonics;
-                }) ||
-      total != header.harmonics) {
-    return "harmonics per component";
+  const bool good = CodeList(coder, harmonics, header.vertices, [&](std::uint32_t& h) {
+    const std::uint32_t expected = count;
+    if (!CodeNear(coder, models, expected, header.harmonics + 1, h) || h == 0) return false;
+    count = h;
+    total += h;
+    return total <= header.harmonics;
+  });
+  return good && total == header.harmonics;
+}
+
+template <class Coder>
+bool CodeOrder(Coder& coder, const SequenceHeader& header, std::vector<std::uint32_t>& order) {
+  SignedModels step;
+  std::uint32_t expected = 0;
+  for (std::uint32_t i = 0; i < header.vertices; ++i) {
+    if constexpr (Coder::kDecodes) order.emplace_back();
+    if (!CodeNear(coder, step, expected, header.vertices, order[i]) || !coder.ok()) return false;
+    expected = order[i] + 1 < header.vertices ? order[i] + 1 : 0;
   }
+  return true;
+}
+
+// Codes all side information. Returns the name of the malformed element or null.
+template <class Coder>
+const char* CodeSide(Coder& coder, const SequenceHeader& header, IFrameSyntax& s) {
+  if (!CodeWelds(coder, header, s.welds)) return "welds";
+  CodeFlag(coder, s.has_normals);
+  CodeFlag(coder, s.has_colors);
+  if (!CodeLooseVertices(coder, header, s)) return "loose vertices";
+  if (!CodeLooseTriangles(coder, header, s.loose_triangles)) return "loose triangles";
+  if (!CodeHarmonics(coder, header, s.harmonics)) return "harmonics per component";
   UnsignedModels samples;
   CodeUnsigned(coder, samples, s.samples_per_harmonic);
   for (float& f : s.fingerprint) CodeFloat(coder, f);
   bool keeps_order = !s.order.empty();
   CodeFlag(coder, keeps_order);
   if (!keeps_order) return coder.ok() ? nullptr : "length";
-  SignedModels step;
-  std::uint32_t expected = 0;
-  for (std::uint32_t i = 0; i < header.vertices; ++i) {
-    if constexpr (Coder::kDecodes) s.order.emplace_back();
-    if (!CodeNear(coder, step, expected, header.vertices, s.order[i]) || !coder.ok()) return "order";
-    expected = s.order[i] + 1 < header.vertices ? s.order[i] + 1 : 0;
-  }
-  return nullptr;
+  return CodeOrder(coder, header, s.order) ? nullptr : "order";
 }
 
 bool IsPermutation(const std::vector<std::uint32_t>& order) {

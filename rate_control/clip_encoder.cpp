@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sac/clip_encoder.h"
 
 #include <exception>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "rate_control/rate_model.h"
 
 #include <Eigen/Cholesky>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "rate_control/target_search.h"
 
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "rate_control/trial.h"
 
 #include "rate_control/measured_encoding.h"

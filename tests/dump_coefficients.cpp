@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Prints a checksum of each frame's integers: what prediction and residuals add up to, without any float.
 // usage: dump_coefficients CLIP.sac
 #include <cstdio>

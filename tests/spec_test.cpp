@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs the worked examples of spec.md, with the numbers as they stand there. The second decoder
 // (conformance/decoder/check_examples.py) does so by itself.
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Repeats what "Spectral animation compression" (Wang et al., JCST 30(3), 2015) measures, with the method as published
 (bench/peers/sac2015.cpp), and writes a page for each of its figures: docs/paper.
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """How many times the bytes of sac the published method takes, at its own operating points."""
 from page import g
 

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures 7 (a rigid vase) and 8 (cloth): clips of one kind of motion."""
 from measure import good, times_the_bits
 from page import curve, g, scales

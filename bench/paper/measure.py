@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Runs the codecs as programs that get nothing but files, measures what they decode, and keeps what was measured.
 
 A result is a dict: bytes, bpvf (bits a vertex and frame, all bytes counted), kg (percent), sted with its parts sted_s

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Table 1 (time of each step), figure 3 (quantized values) and figure 6 (rate and distortion), of all models."""
 from measure import good, times_the_bits
 from page import curve, g, scales

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Figures 5 (without polar decomposition), 9 (without arithmetic coding) and 10 (bits of a coefficient)."""
 from measure import good
 from page import curve, g, scales

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bench/peers/array_peer.h"
 
 #include "bench/peers/connectivity.h"

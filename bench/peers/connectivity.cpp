@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "bench/peers/connectivity.h"
 
 #include <draco/compression/decode.h>

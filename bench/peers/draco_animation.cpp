@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draco's keyframe animation: the coordinates of vertices as animation data over the frames. A track has at most 255
 // components, so 85 vertices share one.
 #include <draco/animation/keyframe_animation.h>

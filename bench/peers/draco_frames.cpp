@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Draco's mesh codec, frame by frame: every frame a file of its own, connectivity and all.
 #include <draco/core/draco_version.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // fpzip on each coordinate as an array of vertices by frames, with so many bits of each float kept.
 #include <fpzip.h>
 

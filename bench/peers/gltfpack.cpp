@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // glTF with a morph target a frame, by gltfpack with its strongest compression (EXT_meshopt_compression). gltfpack is a
 // program of the npm package of that name; `npm ci` in this directory installs the version that package.json names.
 // Which of its vertices is which, it does not say: a second run, on the first frame with numbers, tells.

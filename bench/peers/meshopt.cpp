@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // meshoptimizer's vertex codec on differences from frame to frame, then zstd. Coordinates are integers of `bits` bits
 // of the clip's largest extent.
 #include <meshoptimizer.h>

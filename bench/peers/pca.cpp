@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Trajectory PCA with neighbour prediction: the family of CoDDyaC (Vasa and Skala, "CODDYAC: connectivity driven
 // dynamic mesh compression", 3DTV 2007; "COBRA: compression of the basis for PCA represented animations", CGF 28(6),
 // 2009).

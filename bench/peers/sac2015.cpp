@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Spectral animation compression as published: C. Wang, Y. Liu, X. Guo, Z. Zhong, B. Le, Z. Deng, JCST 30(3), 2015.
 // Every frame's deformation gradients against the reconstructed frame before, as logarithm of rotation and stretch, by
 // unweighted least squares on harmonics of the first frame; coefficients quantized between their least and greatest,
@@ -164,6 +165,40 @@ RangeDecoder ReadCode(ByteReader& in) {
   return RangeDecoder(in.Bytes(size));
 }
 
+// The least and the greatest coefficient of each channel over the whole clip.
+Status MeasureRange(const SpectralBasis& basis, const Settings& settings, const std::vector<PositionMatrix>& frames,
+                    Quantizer& quantizer) {
+  bool any = false;
+  StepClock unused;
+  return EncodeFrames(basis, settings, frames, unused, [&](const MatrixXd& coefficients) {
+    for (Eigen::Index c = 0; c < kChannels; ++c) {
+      const auto i = static_cast<std::size_t>(c);
+      const auto low = static_cast<float>(coefficients.col(c).minCoeff());
+      const auto high = static_cast<float>(coefficients.col(c).maxCoeff());
+      quantizer.low[i] = any ? std::min(quantizer.low[i], low) : low;
+      quantizer.high[i] = any ? std::max(quantizer.high[i], high) : high;
+    }
+    any = true;
+  });
+}
+
+// Writes what the decoder needs before any coefficient, and each frame's centres.
+void WriteHeader(const Settings& settings, const Quantizer& quantizer, const SpectralBasis& basis,
+                 const std::vector<PositionMatrix>& frames, ByteWriter& out, Report& report) {
+  out.Varint(settings.bases);
+  out.U8(static_cast<std::uint8_t>(settings.bits));
+  out.U8(static_cast<std::uint8_t>(settings.polar ? 1 : 0) | static_cast<std::uint8_t>(settings.arithmetic ? 2 : 0));
+  out.Varint(static_cast<std::uint32_t>(frames.size()));
+  for (const float x : quantizer.low) out.F32(x);
+  for (const float x : quantizer.high) out.F32(x);
+  report.Part("header", out);
+  for (std::size_t f = 1; f < frames.size(); ++f) {
+    const PositionMatrix centres = Centres(basis, frames[f]);
+    for (const double x : centres.reshaped()) out.F32(static_cast<float>(x));
+  }
+  report.Part("centres", out);
+}
+
 Status Encode(const Clip& clip, const std::string& setting, PeerStream& stream, Report& report) {
   Settings settings;
   if (!Parse(setting, settings))
@@ -184,18 +219,7 @@ Status Encode(const Clip& clip, const std::string& setting, PeerStream& stream, 
   clock.Lap("eigenvectors");
 
   Quantizer quantizer{{}, {}, settings.bits};
-  bool any = false;
-  StepClock range_clock;
-  SAC_RETURN_IF_ERROR(EncodeFrames(basis, settings, frames, range_clock, [&](const MatrixXd& coefficients) {
-    for (Eigen::Index c = 0; c < kChannels; ++c) {
-      const auto i = static_cast<std::size_t>(c);
-      const auto low = static_cast<float>(coefficients.col(c).minCoeff());
-      const auto high = static_cast<float>(coefficients.col(c).maxCoeff());
-      quantizer.low[i] = any ? std::min(quantizer.low[i], low) : low;
-      quantizer.high[i] = any ? std::max(quantizer.high[i], high) : high;
-    }
-    any = true;
-  }));
+  SAC_RETURN_IF_ERROR(MeasureRange(basis, settings, frames, quantizer));
   clock.Lap("range");
   std::vector<std::uint32_t> levels;
   SAC_RETURN_IF_ERROR(EncodeFrames(basis, settings, frames, clock, [&](MatrixXd& coefficients) {
@@ -207,18 +231,7 @@ Status Encode(const Clip& clip, const std::string& setting, PeerStream& stream, 
     }
   }));
 
-  out.Varint(settings.bases);
-  out.U8(static_cast<std::uint8_t>(settings.bits));
-  out.U8(static_cast<std::uint8_t>(settings.polar ? 1 : 0) | static_cast<std::uint8_t>(settings.arithmetic ? 2 : 0));
-  out.Varint(static_cast<std::uint32_t>(frames.size()));
-  for (const float x : quantizer.low) out.F32(x);
-  for (const float x : quantizer.high) out.F32(x);
-  report.Part("header", out);
-  for (std::size_t f = 1; f < frames.size(); ++f) {
-    const PositionMatrix centres = Centres(basis, frames[f]);
-    for (const double x : centres.reshaped()) out.F32(static_cast<float>(x));
-  }
-  report.Part("centres", out);
+  WriteHeader(settings, quantizer, basis, frames, out, report);
   clock.Lap("writing");
   RangeEncoder positions, counts, coefficients;
   std::vector<Vec3f> lossless;
@@ -254,6 +267,25 @@ Positions PositionsOf(const PositionMatrix& matrix) {
   return out;
 }
 
+// The inverse of WriteHeader(). `centres` has one matrix a frame but the first, of `components` rows.
+bool ReadHeader(ByteReader& in, std::uint32_t components, Settings& settings, Quantizer& quantizer,
+                std::vector<PositionMatrix>& centres) {
+  settings.bases = in.Varint();
+  settings.bits = in.U8();
+  const std::uint8_t flags = in.U8();
+  settings.polar = (flags & 1) != 0;
+  settings.arithmetic = (flags & 2) != 0;
+  const std::uint32_t frames = in.Varint();
+  quantizer = {{}, {}, settings.bits};
+  for (float& x : quantizer.low) x = in.F32();
+  for (float& x : quantizer.high) x = in.F32();
+  for (std::uint32_t f = 1; f < frames && in.ok(); ++f) {
+    centres.emplace_back(components, 3);
+    for (double& x : centres.back().reshaped()) x = static_cast<double>(in.F32());
+  }
+  return in.ok();
+}
+
 Status Decode(std::span<const std::uint8_t> bytes, Clip& clip, Report& report) {
   StepClock& clock = report.clock;
   clock.Lap("reading");
@@ -265,21 +297,9 @@ Status Decode(std::span<const std::uint8_t> bytes, Clip& clip, Report& report) {
   (void)LabelComponents(static_cast<std::uint32_t>(connectivity.vertices), first.triangles, components);
   clock.Lap("connectivity");
   Settings settings;
-  settings.bases = in.Varint();
-  settings.bits = in.U8();
-  const std::uint8_t flags = in.U8();
-  settings.polar = (flags & 1) != 0;
-  settings.arithmetic = (flags & 2) != 0;
-  const std::uint32_t frames = in.Varint();
-  Quantizer quantizer{{}, {}, settings.bits};
-  for (float& x : quantizer.low) x = in.F32();
-  for (float& x : quantizer.high) x = in.F32();
+  Quantizer quantizer{{}, {}, 0};
   std::vector<PositionMatrix> centres;
-  for (std::uint32_t f = 1; f < frames && in.ok(); ++f) {
-    centres.emplace_back(components, 3);
-    for (double& x : centres.back().reshaped()) x = static_cast<double>(in.F32());
-  }
-  if (!in.ok()) return Status::Corrupt("truncated stream");
+  if (!ReadHeader(in, components, settings, quantizer, centres)) return Status::Corrupt("truncated stream");
   RangeDecoder first_frame = ReadCode(in);
   clip.frames.emplace_back(connectivity.vertices);
   CodeFloats(first_frame, clip.frames[0]);

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // xz on the floats as they are, frame after frame, and the triangles' indices before them. Nothing is lost.
 #include <lzma.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // zfp on each coordinate as an array of vertices by frames, in its mode of fixed accuracy.
 #include <zfp.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Makes the report from the data beside it: for each clip plots, a table of Bjontegaard rates, shapes and all figures.
 (() => {
 "use strict";

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Shows frames of a clip, the original above and what was decoded below, its error as colour; all turn together.
 "use strict";
 

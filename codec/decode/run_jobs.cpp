@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "codec/decode/run_jobs.h"
 
 #if SAC_HAS_THREADS

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // How a StreamDecoder goes to other frames and to times between frames.
 #include <algorithm>
 #include <cmath>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "sac/encoder.h"
 
 #include <algorithm>
@@ -143,6 +144,51 @@ Status Contain(Call&& call) {
   }
 }
 
+// Chooses what the settings leave open, by the quality or by the bound on the error. Steps of displacement and detail
+// are fractions of the RMS radius.
+Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, QualitySettings& defaults) {
+  if (!settings.max_error) {
+    defaults = SettingsOfQuality(
+        settings.quality,
+        settings.harmonics ? *settings.harmonics : MostHarmonics(static_cast<std::uint32_t>(first.positions.size())));
+    return Status::Ok();
+  }
+  if (const double least = LeastMaxError(first.positions); *settings.max_error < least) {
+    std::ostringstream message;
+    message << "the largest error allowed, " << *settings.max_error
+            << ", is below the precision of the coordinates; the smallest possible is " << least;
+    return Status::InvalidArgument(message.str());
+  }
+  const double rms = RmsRadius(first.positions);
+  const BoundedSettings bounded = SettingsOfMaxError(*settings.max_error, first.positions);
+  defaults = {settings.quality,          bounded.motion_step,   bounded.displacement_step / rms,
+              bounded.detail_step / rms, bounded.position_bits, bounded.harmonics};
+  return Status::Ok();
+}
+
+// The sequence header but for the grid of positions and the number of harmonics.
+SequenceHeader HeaderOf(const Mesh& first, const EncoderSettings& settings, const QualitySettings& defaults) {
+  SequenceHeader header;
+  const double rms = RmsRadius(first.positions);
+  const double displacement_step = settings.displacement_step.value_or(defaults.displacement_step);
+  if (settings.max_error) {
+    header.correction_step = static_cast<float>(CorrectionStep(*settings.max_error, first.positions));
+  }
+  header.reference_shape = static_cast<std::uint8_t>(settings.reference_shape);
+  header.level_growth = static_cast<std::uint8_t>(std::lround(64 * settings.level_growth));
+  header.vertices = static_cast<std::uint32_t>(first.positions.size());
+  header.triangles = static_cast<std::uint32_t>(first.triangles.size());
+  header.frame_rate_numerator = settings.frame_rate_numerator;
+  header.frame_rate_denominator = settings.frame_rate_denominator;
+  header.motion_step = static_cast<float>(settings.motion_step.value_or(defaults.motion_step));
+  header.displacement_step = static_cast<float>(displacement_step * rms);
+  header.detail_step = static_cast<float>(settings.detail_step.value_or(defaults.detail_step) * rms);
+  header.patch_size = header.vertices <= kLargePatchVertices ? kLargePatch : kSmallPatch;
+  header.rotation_step = static_cast<float>(displacement_step);
+  header.translation_step = header.displacement_step;
+  return header;
+}
+
 }  // namespace
 
 class Encoder::Impl {
@@ -204,35 +250,9 @@ Status Encoder::Impl::Start(const Mesh& first, const EncoderSettings& settings, 
   SAC_RETURN_IF_ERROR(CheckFinite(first.positions));
   settings_ = settings;
   SAC_RETURN_IF_ERROR(Progress(0));
-  const double rms = RmsRadius(first.positions);
-  QualitySettings defaults = SettingsOfQuality(
-      settings.quality,
-      settings.harmonics ? *settings.harmonics : MostHarmonics(static_cast<std::uint32_t>(first.positions.size())));
-  if (settings.max_error) {
-    if (const double least = LeastMaxError(first.positions); *settings.max_error < least) {
-      std::ostringstream message;
-      message << "the largest error allowed, " << *settings.max_error
-              << ", is below the precision of the coordinates; the smallest possible is " << least;
-      return Status::InvalidArgument(message.str());
-    }
-    header.correction_step = static_cast<float>(CorrectionStep(*settings.max_error, first.positions));
-    const BoundedSettings bounded = SettingsOfMaxError(*settings.max_error, first.positions);
-    defaults = {settings.quality,          bounded.motion_step,   bounded.displacement_step / rms,
-                bounded.detail_step / rms, bounded.position_bits, bounded.harmonics};
-  }
-  const double displacement_step = settings.displacement_step.value_or(defaults.displacement_step);
-  header.reference_shape = static_cast<std::uint8_t>(settings.reference_shape);
-  header.level_growth = static_cast<std::uint8_t>(std::lround(64 * settings.level_growth));
-  header.vertices = static_cast<std::uint32_t>(first.positions.size());
-  header.triangles = static_cast<std::uint32_t>(first.triangles.size());
-  header.frame_rate_numerator = settings.frame_rate_numerator;
-  header.frame_rate_denominator = settings.frame_rate_denominator;
-  header.motion_step = static_cast<float>(settings.motion_step.value_or(defaults.motion_step));
-  header.displacement_step = static_cast<float>(displacement_step * rms);
-  header.detail_step = static_cast<float>(settings.detail_step.value_or(defaults.detail_step) * rms);
-  header.patch_size = header.vertices <= kLargePatchVertices ? kLargePatch : kSmallPatch;
-  header.rotation_step = static_cast<float>(displacement_step);
-  header.translation_step = header.displacement_step;
+  QualitySettings defaults;
+  SAC_RETURN_IF_ERROR(ChooseDefaults(first, settings, defaults));
+  header = HeaderOf(first, settings, defaults);
 
   PositionTargets targets;
   SAC_RETURN_IF_ERROR(

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "codec/encode/i_frame_encoder.h"
 
 #include <draco/compression/expert_encode.h>

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Runs the worked examples of spec.md, read from its text, through this decoder.
 
 Exit code 1 if one is not as the text says, 77 if the packages that this needs are missing.

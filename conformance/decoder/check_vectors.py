@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Decodes the conformance vectors with this decoder and compares the results with conformance/manifest.json.
 
 A valid stream must give the manifest's integers, and its positions within the tolerance of spec.md 8; an invalid one must

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Decodes streams with this decoder and with the sac command and compares triangles and positions, by the tolerance of spec.md 8.
 
 Exit code 1 if a stream is decoded differently.

@@ -1,4 +1,5 @@
 #!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
 """Decodes a sac stream by the text of spec.md, slowly.
 
 Writes one OBJ file a frame, or a JSON object: what conformance/manifest.json says of a stream, with the positions of all

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* SAC_API marks the functions of C, which are all that libsac.so exports. */
 #ifndef SAC_EXPORT_H
 #define SAC_EXPORT_H

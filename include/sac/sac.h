@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* The decoder of sac streams for C, and for what speaks C. decoder.h says more, for C++.
  *
  *   sac_settings settings;

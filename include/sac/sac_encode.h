@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* The encoder of sac streams for C, and for what speaks C. encoder.h and clip_encoder.h are the same for C++.
  *
  *   sac_encoder_settings settings;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* The version of the library, for the preprocessor; sac_version() gives that of the library that is linked. */
 #ifndef SAC_VERSION_H
 #define SAC_VERSION_H

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The other codecs of bench/peers, as sac sweep runs them.
 #include <cmath>
 #include <map>

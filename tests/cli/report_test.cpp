@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // info, verify, compare and synth.
 #include "tests/cli/sac_command.h"
 

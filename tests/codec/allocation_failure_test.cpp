@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decodes with the n-th allocation failing, for one n after another: an error that says so, and nothing lost. spec.md
 // 11, R60.
 #include <gtest/gtest.h>

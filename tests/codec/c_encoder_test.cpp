@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The encoder's C interface, against the C++ one.
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Replaces operator new, and malloc by the linker's --wrap.
 #include "tests/codec/counted_memory.h"
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What a decoder holds against what it counts beforehand (spec.md 9).
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <map>
@@ -86,8 +87,7 @@ Mesh Make(const Positions& positions, const std::vector<Triangle>& triangles) {
 
 const Positions kSix = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {1, 1, 1}, {-1, 0.5f, 0.5f}};
 
-TEST(OddMesh, ComesBackComplete) {
-  const Mesh sphere = SphereMesh(2);
+Mesh MoebiusMesh() {
   Mesh moebius;
   for (std::uint32_t s = 0; s < 20; ++s) {
     const double angle = 2 * std::numbers::pi * s / 20;
@@ -101,6 +101,11 @@ TEST(OddMesh, ComesBackComplete) {
     moebius.triangles.push_back({a, c, b});
     moebius.triangles.push_back({b, c, d});
   }
+  return moebius;
+}
+
+TEST(OddMesh, ComesBackComplete) {
+  const Mesh sphere = SphereMesh(2);
   Mesh turned = sphere;
   for (std::size_t j = 0; j < turned.triangles.size(); j += 3)
     std::swap(turned.triangles[j][0], turned.triangles[j][1]);
@@ -132,7 +137,7 @@ TEST(OddMesh, ComesBackComplete) {
       {"four triangles at an edge", Make(kSix, {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}, {1, 0, 5}})},
       {"a bow tie", Make({kSix.begin(), kSix.begin() + 5}, {{0, 1, 2}, {0, 3, 4}})},
       {"a collinear triangle", Make({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 1, 3}})},
-      {"Moebius", moebius},
+      {"Moebius", MoebiusMesh()},
       {"turned triangles", turned},
       {"all triangles twice", doubled},
       {"both sides", both_sides},

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "codec/radial_functions.h"
 
 #include <gtest/gtest.h>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A player's own job system reconstructs frames (DecoderSettings::run_jobs).
 #include <gtest/gtest.h>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A player's loop must not allocate: within a group, frames go to the caller's buffers in memory that the decoder
 // holds.
 #include <gtest/gtest.h>

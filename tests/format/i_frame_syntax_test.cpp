@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "format/i_frame_syntax.h"
 
 #include <gtest/gtest.h>

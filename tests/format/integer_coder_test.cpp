@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include "format/integer_coder.h"
 
 #include <gtest/gtest.h>

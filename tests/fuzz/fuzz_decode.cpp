@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The whole decoder, in chunks whose sizes are drawn from the input, with small limits.
 #include <algorithm>
 #include <random>

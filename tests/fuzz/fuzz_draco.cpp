@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // What stands before Draco, and Draco: an I-frame's mesh in a stream that allows it 2,000 triangles.
 #include <algorithm>
 

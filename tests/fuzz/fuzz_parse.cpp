@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Everything before numerics: packets in chunks, headers, I-frames, and frames whose planes are laid out as if the
 // I-frame's components were known. What is parsed is written again, and must be the same.
 #include <algorithm>

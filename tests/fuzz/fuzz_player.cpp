@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A player that calls in any order: seeks, feeds, receives into its own memory, interpolates, starts again. What it is
 // given of a sound stream is what decoding from begin to end gives.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // The positions of the I-frame: any code, on a mesh out of the input. What is decoded is then coded and must come back.
 #include <algorithm>
 #include <vector>

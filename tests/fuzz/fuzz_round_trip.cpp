@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // A small mesh and its frames, and the encoder's settings, out of the input: what is encoded must decode, and with a
 // bound on the error be within it.
 #include <algorithm>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Decodes the streams of directories after random mutations, half of them with checksums repaired, and their prefixes:
 // all of them when there are no more than mutations.
 // usage: mutate_vectors MUTATIONS [--seed N] [--seconds MOST] [--megabytes MOST] FILE_OR_DIRECTORY...

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a fuzz target on files and on the files of directories, each in a buffer of exactly its size.
 #include <algorithm>
 #include <cstdio>

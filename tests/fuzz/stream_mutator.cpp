@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // libFuzzer's mutations, but behind the checks of packets and the fingerprint of the basis.
 #include <algorithm>
 #include <cstring>

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Counts the frames of the stream that is named. */
 #include <sac/sac.h>
 #include <stdio.h>

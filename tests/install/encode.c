@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 /* Encodes a clip of a tetrahedron that turns, and writes the stream to the file that is named. */
 #include <math.h>
 #include <sac/sac_encode.h>

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # A library that is embedded leaves the project around it as it was: its flags, its standard, its build type, its tests,
 # and no cache variables but those that begin with SAC_ or belong to CMake and to the packages that sac needs.
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -18,24 +19,10 @@ double Distance(const Vec3f& p, const Vec3f& q) {
 
 using Clip = std::vector<Positions>;
 
-// The metrics by their definitions, with the edges near each vertex listed one by one and all frames in memory.
-DistortionMetrics SlowMetrics(const std::vector<Triangle>& triangles, const Clip& a, const Clip& b) {
-  DistortionMetrics m;
+// STEDs by its definition, with the edges near each vertex listed one by one.
+double SlowSpatial(const std::vector<Triangle>& triangles, const Clip& a, const Clip& b) {
   const std::size_t n = a[0].size(), frames = a.size();
-  double error = 0, spread = 0;
-  for (std::size_t f = 0; f < frames; ++f) {
-    for (int c = 0; c < 3; ++c) {
-      double mean = 0;
-      for (const Vec3f& p : a[f]) mean += p[c] / static_cast<double>(n);
-      for (const Vec3f& p : a[f]) spread += (p[c] - mean) * (p[c] - mean);
-    }
-    for (std::size_t v = 0; v < n; ++v) {
-      error += std::pow(Distance(a[f][v], b[f][v]), 2);
-      m.max_error = std::max(m.max_error, Distance(a[f][v], b[f][v]));
-    }
-  }
-  m.kg = 100 * std::sqrt(error / spread);
-
+  double sum = 0;
   std::set<std::pair<std::size_t, std::size_t>> edges;
   for (const Triangle& t : triangles) {
     for (int k = 0; k < 3; ++k) edges.insert(std::minmax(t[k], t[(k + 1) % 3]));
@@ -61,10 +48,15 @@ DistortionMetrics SlowMetrics(const std::vector<Triangle>& triangles, const Clip
           }
         }
       }
-      m.sted_s += std::sqrt(variance) / static_cast<double>(n * frames);
+      sum += std::sqrt(variance) / static_cast<double>(n * frames);
     }
   }
+  return sum;
+}
 
+double SlowTemporal(const Clip& a, const Clip& b) {
+  const std::size_t n = a[0].size(), frames = a.size();
+  double sum_t = 0;
   double diameter = 0;
   for (const Vec3f& p : a[0]) {
     for (const Vec3f& q : a[0]) diameter = std::max(diameter, Distance(p, q));
@@ -78,9 +70,32 @@ DistortionMetrics SlowMetrics(const std::vector<Triangle>& triangles, const Clip
       double sum = 0;
       int count = 0;
       for (int j = std::max(0, i - 4); j <= std::min(steps - 1, i + 5); ++j, ++count) sum += speed(a, j);
-      m.sted_t += std::abs(speed(b, i) - speed(a, i)) / (sum / count) / (static_cast<double>(n) * steps);
+      sum_t += std::abs(speed(b, i) - speed(a, i)) / (sum / count) / (static_cast<double>(n) * steps);
     }
   }
+  return sum_t;
+}
+
+// The metrics by their definitions, with all frames in memory.
+DistortionMetrics SlowMetrics(const std::vector<Triangle>& triangles, const Clip& a, const Clip& b) {
+  DistortionMetrics m;
+  const std::size_t n = a[0].size(), frames = a.size();
+  double error = 0, spread = 0;
+  for (std::size_t f = 0; f < frames; ++f) {
+    for (int c = 0; c < 3; ++c) {
+      double mean = 0;
+      for (const Vec3f& p : a[f]) mean += p[c] / static_cast<double>(n);
+      for (const Vec3f& p : a[f]) spread += (p[c] - mean) * (p[c] - mean);
+    }
+    for (std::size_t v = 0; v < n; ++v) {
+      error += std::pow(Distance(a[f][v], b[f][v]), 2);
+      m.max_error = std::max(m.max_error, Distance(a[f][v], b[f][v]));
+    }
+  }
+  m.kg = 100 * std::sqrt(error / spread);
+
+  m.sted_s = SlowSpatial(triangles, a, b);
+  m.sted_t = SlowTemporal(a, b);
   m.sted = std::hypot(m.sted_s, 9.144e-5 * m.sted_t);
   m.frames = frames;
   return m;

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Writes the table of sizes and errors that rate_table_test compares: make_rate_table FILE
 
 #include <cstdio>

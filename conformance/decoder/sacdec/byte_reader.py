@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bytes, varints and floats: spec.md 2.2 and 2.3."""
 
 import struct

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Draco's part of the I-frame: spec.md 5.1. The bytes are decoded by Draco itself, through `draco_corners`."""
 
 import json

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The end packet and its index of groups: spec.md 3.2."""
 
 from dataclasses import dataclass

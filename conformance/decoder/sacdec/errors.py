@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Malformed streams: spec.md 11."""
 
 LIMIT_RULES = {3, 22, 23, 44, 48, 60, 63}

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The frames of a group: spec.md 6.2 and 6.3."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Which frames a group has in which order, and steps of levels: spec.md 6.1 and 6.3."""
 
 from collections.abc import Sequence

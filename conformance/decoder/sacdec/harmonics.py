@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The harmonic basis of components and patches, and its fingerprint: spec.md 6.4 and 6.6."""
 
 import itertools

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The parts of the I-frame and its side information: spec.md 5 and 5.2."""
 
 import struct

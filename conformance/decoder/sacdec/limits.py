@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What this decoder refuses as too large: the defaults of spec.md 9."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Bins that are mixed from several contexts: spec.md 7.4.1 to 7.4.3."""
 
 from bisect import bisect_left

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Writes frames as Wavefront OBJ files."""
 
 from pathlib import Path

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What the triangles say about positions: spec.md 5.5.1 and 5.5.2."""
 
 from collections import deque

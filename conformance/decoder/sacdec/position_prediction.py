@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What is known around a vertex, and where it would bend the surface least: spec.md 5.5.3 and 5.5.4."""
 
 from dataclasses import dataclass, field

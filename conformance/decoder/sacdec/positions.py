@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The I-frame's positions: spec.md 5.5, the parts 5.5.5 to 5.5.7."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The range decoder, bit models and integers: spec.md 7.1 to 7.3."""
 
 from .errors import StreamError

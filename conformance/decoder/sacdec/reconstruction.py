@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """From coefficients to positions: spec.md 6.5."""
 
 from collections.abc import Sequence

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """The residuals of one plane: spec.md 7.4."""
 
 from dataclasses import dataclass

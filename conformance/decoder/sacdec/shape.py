@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Edges, weights and masses of a shape: spec.md 6.4.1 and 6.4.2."""
 
 from dataclasses import dataclass

@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """A stream from its first byte to its last: spec.md 3, 5 and 6."""
 
 import zlib

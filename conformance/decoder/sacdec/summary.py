@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """What conformance/manifest.json says of a stream, from a decoded clip."""
 
 import zlib

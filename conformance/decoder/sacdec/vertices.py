@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 """Joining Draco's entries into vertices, and the numbering of vertices: spec.md 5.3 and 5.4."""
 
 from collections.abc import Iterable, Sequence
