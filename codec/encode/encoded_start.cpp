@@ -1,0 +1,248 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/encode/encoded_start.h"
+
+#include <algorithm>
+#include <array>
+#include <bit>
+#include <cmath>
+#include <cstddef>
+#include <optional>
+#include <sstream>
+#include <utility>
+
+#include "codec/decode/damage_policy.h"
+#include "codec/decode/stream_start.h"
+#include "codec/encode/contain.h"
+#include "codec/encode/error_bound.h"
+#include "codec/encode/i_frame_encoder.h"
+#include "codec/encode/input_check.h"
+#include "codec/encode/position_grid.h"
+#include "codec/encode/quality.h"
+#include "format/bytes.h"
+#include "format/crc32.h"
+#include "format/packet.h"
+
+namespace sac {
+namespace {
+
+// A patch's harmonics compress the better the larger it is, and start the slower.
+constexpr std::uint32_t kLargePatch = 200, kSmallPatch = 64, kLargePatchVertices = 50'000;
+
+double RmsRadius(const Positions& positions) {
+  std::array<double, 3> sum{};
+  double squares = 0;
+  for (const Vec3f& p : positions) {
+    for (std::size_t a = 0; a < 3; ++a) sum[a] += static_cast<double>(p[a]);
+  }
+  const auto n = static_cast<double>(positions.size());
+  for (const Vec3f& p : positions) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double d = static_cast<double>(p[a]) - sum[a] / n;
+      squares += d * d;
+    }
+  }
+  // A single point has no size of its own; how far it is from the origin tells most about how far it may go.
+  const double radius = std::sqrt(squares / n), largest = LargestCoordinate(positions);
+  if (radius > 1e-7 * largest) return radius;
+  return largest > 0 ? largest : 1;
+}
+
+// Harmonics for each component in proportion to its area, which by Weyl's law is an equal bound on eigenvalues; one at
+// least, for its own rigid motion.
+std::vector<std::uint32_t> ShareHarmonics(const DecodedMesh& mesh, std::uint32_t wanted) {
+  PositionMatrix positions(static_cast<Eigen::Index>(mesh.grid.size()), 3);
+  for (std::size_t v = 0; v < mesh.grid.size(); ++v) {
+    positions.row(static_cast<Eigen::Index>(v)) << mesh.grid[v][0], mesh.grid[v][1], mesh.grid[v][2];
+  }
+  const Eigen::VectorXd masses = VertexMasses(positions, mesh.triangles);
+  const auto components = static_cast<double>(mesh.components.size());
+  const double spare = std::max(0.0, static_cast<double>(wanted) - components);
+  std::vector<std::uint32_t> counts;
+  for (const Component& c : mesh.components) {
+    const double share = masses.segment(c.first, c.count).sum();
+    counts.push_back(std::min(c.count, 1 + static_cast<std::uint32_t>(std::floor(spare * share + 1e-9))));
+  }
+  return counts;
+}
+
+// Chooses what the settings leave open, by the quality or by the bound on the error. Steps of displacement and detail
+// are fractions of the RMS radius.
+Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, QualitySettings& defaults) {
+  if (!settings.max_error) {
+    defaults = SettingsOfQuality(
+        settings.quality,
+        settings.harmonics ? *settings.harmonics : MostHarmonics(static_cast<std::uint32_t>(first.positions.size())));
+    return Status::Ok();
+  }
+  if (const double least = LeastMaxError(first.positions); *settings.max_error < least) {
+    std::ostringstream message;
+    message << "the largest error allowed, " << *settings.max_error
+            << ", is below the precision of the coordinates; the smallest possible is " << least;
+    return Status::InvalidArgument(message.str());
+  }
+  const double rms = RmsRadius(first.positions);
+  const BoundedSettings bounded = SettingsOfMaxError(*settings.max_error, first.positions);
+  defaults = {settings.quality,          bounded.motion_step,   bounded.displacement_step / rms,
+              bounded.detail_step / rms, bounded.position_bits, bounded.harmonics};
+  return Status::Ok();
+}
+
+// The sequence header but for the grid of positions and the number of harmonics.
+SequenceHeader HeaderOf(const Mesh& first, const EncoderSettings& settings, const QualitySettings& defaults) {
+  SequenceHeader header;
+  const double rms = RmsRadius(first.positions);
+  const double displacement_step = settings.displacement_step.value_or(defaults.displacement_step);
+  if (settings.max_error) {
+    header.correction_step = static_cast<float>(CorrectionStep(*settings.max_error, first.positions));
+  }
+  header.reference_shape = static_cast<std::uint8_t>(settings.reference_shape);
+  header.level_growth = static_cast<std::uint8_t>(std::lround(64 * settings.level_growth));
+  header.vertices = static_cast<std::uint32_t>(first.positions.size());
+  header.triangles = static_cast<std::uint32_t>(first.triangles.size());
+  header.frame_rate_numerator = settings.frame_rate_numerator;
+  header.frame_rate_denominator = settings.frame_rate_denominator;
+  header.motion_step = static_cast<float>(settings.motion_step.value_or(defaults.motion_step));
+  header.displacement_step = static_cast<float>(displacement_step * rms);
+  header.detail_step = static_cast<float>(settings.detail_step.value_or(defaults.detail_step) * rms);
+  header.patch_size = header.vertices <= kLargePatchVertices ? kLargePatch : kSmallPatch;
+  header.rotation_step = static_cast<float>(displacement_step);
+  header.translation_step = header.displacement_step;
+  return header;
+}
+
+Status Progress(const EncoderSettings& settings) {
+  return settings.progress && !settings.progress(0) ? Status::Cancelled() : Status::Ok();
+}
+
+// Finishes an I-frame whose mesh is `mesh` and whose harmonics are in `syntax`: derives the shape, and writes the
+// payload with the fingerprint of its harmonics. kLimit when decoders with `limits` would refuse it.
+Status FinishIFrame(DecodedMesh mesh, const Limits& limits, IFrameSyntax& syntax, EncodedStart& start) {
+  // The fingerprint is not known yet; the size does not depend on it.
+  const Limits of_i_frame = LimitsOfIFrame(limits, WriteIFrame(syntax, start.header).size());
+  if (const Status status = BuildShape(start.header, std::move(mesh), syntax.harmonics, syntax.samples_per_harmonic,
+                                       of_i_frame, start.shape);
+      !status.ok()) {
+    return status.code() == StatusCode::kLimit ? Status::Limit(status.message() + " of decoders") : status;
+  }
+  syntax.fingerprint = Fingerprint(start.shape.basis, start.shape.patch_basis);
+  start.i_frame = WriteIFrame(syntax, start.header);
+  return Status::Ok();
+}
+
+// EncodeStart() with the part `share` of the harmonics that the quality stands for.
+Status EncodeStart(const Mesh& first, const EncoderSettings& settings, double share, EncodedStart& start) {
+  start = {};
+  SAC_RETURN_IF_ERROR(Progress(settings));
+  QualitySettings defaults{};
+  SAC_RETURN_IF_ERROR(ChooseDefaults(first, settings, defaults));
+  start.header = HeaderOf(first, settings, defaults);
+  start.max_error = settings.max_error.value_or(0);
+
+  PositionTargets targets;
+  SAC_RETURN_IF_ERROR(ChooseGrid(first, settings.position_bits.value_or(defaults.position_bits), !settings.max_error,
+                                 start.header, targets));
+  IFrameSyntax syntax;
+  DecodedIFrame decoded;
+  SAC_RETURN_IF_ERROR(EncodeIFrameMesh(first, targets, start.header, syntax, decoded, start.order));
+
+  syntax.harmonics = ShareHarmonics(
+      decoded.mesh, settings.harmonics.value_or(static_cast<std::uint32_t>(std::lround(share * defaults.harmonics))));
+  syntax.samples_per_harmonic = settings.samples_per_harmonic;
+  if (settings.keep_order) syntax.order = start.order;
+  for (const std::uint32_t count : syntax.harmonics) start.header.harmonics += count;
+  SequenceHeader parsed;
+  if (const Status status = ParseSequenceHeader(WriteSequenceHeader(start.header), settings.limits, parsed);
+      !status.ok()) {
+    return Status::InvalidArgument(status.message());  // such as a step that no float can hold
+  }
+  SAC_RETURN_IF_ERROR(Progress(settings));
+  return FinishIFrame(std::move(decoded.mesh), settings.limits, syntax, start);
+}
+
+bool IsPermutation(const std::vector<std::uint32_t>& order) {
+  std::vector<bool> seen(order.size());
+  for (const std::uint32_t i : order) {
+    if (i >= seen.size() || seen[i]) return false;
+    seen[i] = true;
+  }
+  return true;
+}
+
+// Cuts the next packet, which has to be of `type`, from the front of `bytes`.
+Status NextPacket(PacketReader& reader, PacketType type, std::span<const std::uint8_t>& bytes, Packet& packet) {
+  std::optional<Packet> next;
+  SAC_RETURN_IF_ERROR(reader.Read(bytes, next));
+  if (!next || next->type != type) return Status::Corrupt("stream start: no header and I-frame");
+  packet = std::move(*next);
+  return Status::Ok();
+}
+
+// Reads what follows the I-frame of a start: bound, order, CRC-32.
+Status ReadEncoderPart(std::span<const std::uint8_t> bytes, EncodedStart& start) {
+  constexpr std::size_t kBound = 8, kIndex = 4, kCrc = 4;
+  const std::size_t vertices = start.header.vertices;
+  if (bytes.size() != kBound + kIndex * vertices + kCrc) return Status::Corrupt("stream start: length");
+  ByteReader reader(bytes);
+  const std::uint64_t low = reader.U32(), high = reader.U32();
+  start.max_error = std::bit_cast<double>(low | high << 32);
+  start.order.resize(vertices);
+  for (std::uint32_t& i : start.order) i = reader.U32();
+  if (reader.U32() != Crc32(bytes.first(bytes.size() - kCrc))) return Status::Corrupt("stream start: wrong CRC-32");
+  if (!IsPermutation(start.order)) return Status::Corrupt("stream start: the vertex order is no permutation");
+  const bool is_bounded = start.header.correction_step > 0;
+  if (!std::isfinite(start.max_error) || (is_bounded ? start.max_error <= 0 : start.max_error != 0)) {
+    return Status::Corrupt("stream start: a bound on the error that is not the header's");
+  }
+  return Status::Ok();
+}
+
+}  // namespace
+
+Status EncodeStart(const Mesh& first, const EncoderSettings& settings, EncodedStart& start) {
+  SAC_RETURN_IF_ERROR(CheckSettings(settings));
+  SAC_RETURN_IF_ERROR(CheckMesh(first, settings.limits));
+  SAC_RETURN_IF_ERROR(CheckFinite(first.positions));
+  // A small I-frame of a large mesh may not ask for as many harmonics as its quality would.
+  constexpr double kFewer = 0.9, kFewest = 0.1;
+  for (double share = 1;; share *= kFewer) {
+    const Status status = Contain([&] { return EncodeStart(first, settings, share, start); });
+    if (status.code() != StatusCode::kLimit || settings.harmonics || share < kFewest) return status;
+  }
+}
+
+std::vector<std::uint8_t> WriteStreamStart(const EncodedStart& start) {
+  ByteWriter out;
+  out.Bytes(kMagic);
+  out.Bytes(WritePacket(PacketType::kHeader, WriteSequenceHeader(start.header)));
+  out.Bytes(WritePacket(PacketType::kIFrame, start.i_frame));
+  const std::size_t begin = out.size();
+  const auto bound = std::bit_cast<std::uint64_t>(start.max_error);
+  out.U32(static_cast<std::uint32_t>(bound));
+  out.U32(static_cast<std::uint32_t>(bound >> 32));
+  for (const std::uint32_t i : start.order) out.U32(i);
+  out.U32(Crc32(std::span(out.bytes()).subspan(begin)));
+  return std::move(out.bytes());
+}
+
+Status ReadStreamStart(std::span<const std::uint8_t> bytes, const Limits& limits, EncodedStart& start) {
+  start = {};
+  PacketReader packets(limits);
+  Packet packet;
+  const DamagePolicy strict(false);
+  StreamStart decoded(limits, strict);
+  SAC_RETURN_IF_ERROR(NextPacket(packets, PacketType::kHeader, bytes, packet));
+  SAC_RETURN_IF_ERROR(decoded.TakeHeader(packet.payload));
+  SAC_RETURN_IF_ERROR(NextPacket(packets, PacketType::kIFrame, bytes, packet));
+  start.header = *decoded.header();
+  SAC_RETURN_IF_ERROR(ReadEncoderPart(bytes, start));  // before the shape is built, which takes longer
+  bool is_new = false;
+  SAC_RETURN_IF_ERROR(decoded.TakeIFrame(packet.payload, is_new));
+  if (!decoded.order().empty() && decoded.order() != start.order) {
+    return Status::Corrupt("stream start: a vertex order that is not the I-frame's");
+  }
+  start.i_frame = std::move(packet.payload);
+  start.shape = std::move(decoded.shape());
+  return Status::Ok();
+}
+
+}  // namespace sac

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "codec/encode/stream_encoder.h"
+
+#include <cstddef>
+#include <string>
+
+#include "codec/encode/input_check.h"
+#include "format/group_structure.h"
+
+namespace sac {
+namespace {
+
+// The rows of `positions` in the order of decoded vertices.
+PositionMatrix InDecodedOrder(std::span<const Vec3f> positions, const std::vector<std::uint32_t>& order) {
+  PositionMatrix ordered(static_cast<Eigen::Index>(order.size()), 3);
+  for (std::size_t v = 0; v < order.size(); ++v) {
+    const Vec3f& p = positions[order[v]];
+    ordered.row(static_cast<Eigen::Index>(v)) << static_cast<double>(p[0]), static_cast<double>(p[1]),
+        static_cast<double>(p[2]);
+  }
+  return ordered;
+}
+
+}  // namespace
+
+StreamEncoder::StreamEncoder(EncodedStart start, const EncoderSettings& settings)
+    : start_(std::move(start)),
+      settings_(settings),
+      info_(InfoOf(start_.header)),
+      encoder_(start_.shape, start_.header, start_.max_error),
+      writer_(settings.index, settings.repeat_start) {
+  writer_.Start(WriteSequenceHeader(start_.header), start_.i_frame);
+}
+
+Status StreamEncoder::Send(std::span<const Vec3f> positions) {
+  if (finished_) return Status::InvalidArgument("the stream is finished");
+  SAC_RETURN_IF_ERROR(failure_);
+  if (positions.size() != start_.order.size()) {
+    return Status::InvalidArgument(std::to_string(positions.size()) + " vertices, expected " +
+                                   std::to_string(start_.order.size()));
+  }
+  SAC_RETURN_IF_ERROR(CheckFinite(positions));
+  PositionMatrix ordered = InDecodedOrder(positions, start_.order);
+  if (settings_.low_delay) return Latch(EncodeFrame(std::move(ordered)));
+  waiting_.push_back(std::move(ordered));
+  return IsFull(static_cast<std::uint32_t>(waiting_.size())) ? Latch(EncodeGroup()) : Status::Ok();
+}
+
+// A group is no longer than any decoder takes by default.
+bool StreamEncoder::IsFull(std::uint32_t frames) const {
+  return frames == settings_.group || (std::uint64_t{frames} + 1) * FrameValues(start_.shape.layouts) >
+                                          MaxGroupValues(settings_.limits, start_.shape);
+}
+
+Status StreamEncoder::EncodeFrame(PositionMatrix positions) {
+  if (open_frames_ == 0) {
+    writer_.OpenGroup();
+    coder_.emplace(start_.header, start_.shape.layouts);
+  }
+  FrameSyntax frame;
+  SAC_RETURN_IF_ERROR(encoder_.EncodeNext(std::move(positions), open_frames_, frame));
+  RangeEncoder range;  // each frame ends with a whole byte; the models go on
+  FrameBits bits;
+  if (!coder_->Code(range, ChainSlot(open_frames_), frame, &bits)) {
+    return Status::InvalidArgument("the motion is too far from the first frame for these steps");
+  }
+  writer_.Frame(range.Finish(), bits);
+  if (IsFull(++open_frames_)) EndOpenGroup();
+  return Progress(writer_.frames());
+}
+
+void StreamEncoder::EndOpenGroup() {
+  if (open_frames_ > 0) writer_.CloseGroup();
+  open_frames_ = 0;
+}
+
+Status StreamEncoder::EncodeGroup() {
+  const auto frames = static_cast<std::uint32_t>(waiting_.size());
+  const std::uint32_t pyramid = start_.header.references_previous() ? 1 : settings_.pyramid;
+  const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
+  std::vector<FrameSyntax> coded;
+  RangeEncoder range;
+  FrameCoder<RangeEncoder> coder(start_.header, start_.shape.layouts);
+  FrameBits bits;
+  const std::uint32_t before = writer_.frames();
+  const auto frame_done = [&](std::uint32_t count) { return Progress(before + count); };
+  SAC_RETURN_IF_ERROR(encoder_.Encode(waiting_, structure, frame_done, coded));
+  for (std::size_t i = 0; i < coded.size(); ++i) {
+    if (!coder.Code(range, structure[i], coded[i], &bits)) {
+      return Status::InvalidArgument("the motion is too far from the first frame for these steps");
+    }
+  }
+  writer_.Group({frames, writer_.frames(), pyramid}, range.Finish(), bits);
+  waiting_.clear();
+  return Status::Ok();
+}
+
+Status StreamEncoder::Finish() {
+  if (finished_) return Status::InvalidArgument("the stream is finished");
+  SAC_RETURN_IF_ERROR(failure_);
+  EndOpenGroup();
+  if (!waiting_.empty()) SAC_RETURN_IF_ERROR(Latch(EncodeGroup()));
+  writer_.End();
+  finished_ = true;
+  return Status::Ok();
+}
+
+}  // namespace sac

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "codec/encode/encoded_start.h"
+#include "codec/encode/group_encoder.h"
+#include "codec/reconstruct.h"
+#include "format/frame_coder.h"
+#include "format/stream_writer.h"
+#include "sac/encoder.h"
+#include "sac/mesh.h"
+#include "sac/status.h"
+#include "sac/stream_info.h"
+
+namespace sac {
+
+// Encodes the frames of one stream, group after group. The functions are those of Encoder, which says what they do;
+// they may throw std::bad_alloc, after which half a frame or half a group has been coded: call Latch() then.
+class StreamEncoder {
+ public:
+  // Begins a stream with `start`. Of `settings`, which CheckSettings() has passed, only what concerns groups is used:
+  // group, pyramid, low_delay, index, repeat_start, limits and progress.
+  StreamEncoder(EncodedStart start, const EncoderSettings& settings);
+  StreamEncoder(const StreamEncoder&) = delete;
+  StreamEncoder& operator=(const StreamEncoder&) = delete;
+
+  Status Send(std::span<const Vec3f> positions);
+  Status Finish();
+  std::vector<std::uint8_t> TakeBytes() { return writer_.TakeBytes(); }
+
+  // Keeps a failure after which nothing can be coded.
+  Status Latch(Status status) {
+    if (!status.ok()) failure_ = status;
+    return status;
+  }
+
+  const std::vector<std::uint32_t>& order() const { return start_.order; }
+  const StreamInfo& info() const { return info_; }
+  const StreamBytes& stream_bytes() const { return writer_.sizes(); }
+
+ private:
+  // Whether a group of `frames` frames takes no more.
+  bool IsFull(std::uint32_t frames) const;
+  // Tells the caller that `frames` frames are coded; kCancelled when it wants no more.
+  Status Progress(std::uint32_t frames) const {
+    return settings_.progress && !settings_.progress(frames) ? Status::Cancelled() : Status::Ok();
+  }
+  // Codes the frames that wait as a group.
+  Status EncodeGroup();
+  // Codes a frame of an open group (low delay).
+  Status EncodeFrame(PositionMatrix positions);
+  void EndOpenGroup();
+
+  const EncodedStart start_;
+  const EncoderSettings settings_;
+  const StreamInfo info_;
+  GroupEncoder encoder_;
+  StreamWriter writer_;
+  std::vector<PositionMatrix> waiting_;  // frames that wait for the group to be full
+  bool finished_ = false;
+
+  // The open group, with low delay.
+  std::optional<FrameCoder<RangeEncoder>> coder_;
+  std::uint32_t open_frames_ = 0;
+  Status failure_;
+};
+
+}  // namespace sac
