@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <random>
 #include <string>
 
 #include "tests/files/mesh_files.h"

@@ -66,7 +66,7 @@ void ReadGroup(std::span<const std::uint8_t> payload, const SequenceHeader& head
   if (!ParseGroup(payload, group, bytes).ok()) return;
   FUZZ_REQUIRE(WriteGroup(group, bytes) == Bytes(payload.begin(), payload.end()));
   const std::uint32_t frames = group.frames;
-  if (group.open() || frames > FuzzLimits().frames_per_group) return;
+  if (group.open() || frames > FuzzLimits().expert.frames_per_group) return;
   const std::vector<FrameSlot> slots = GroupStructure(frames, group.pyramid);
   FUZZ_REQUIRE(slots.size() == frames);
   const Frames read = ReadFrames(bytes, header, layouts, slots);
