@@ -153,16 +153,16 @@ const char* CodeSide(Coder& coder, const SequenceHeader& header, IFrameSyntax& s
   return CodeOrder(coder, header, s.order) ? nullptr : "order";
 }
 
+}  // namespace
+
 bool IsPermutation(const std::vector<std::uint32_t>& order) {
   std::vector<bool> seen(order.size());
   for (const std::uint32_t i : order) {
-    if (seen[i]) return false;
+    if (i >= seen.size() || seen[i]) return false;
     seen[i] = true;
   }
   return true;
 }
-
-}  // namespace
 
 std::vector<std::uint8_t> WriteIFrame(const IFrameSyntax& syntax, const SequenceHeader& header) {
   ByteWriter out;

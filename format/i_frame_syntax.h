@@ -46,6 +46,9 @@ struct IFrameSyntax {
   std::vector<std::uint32_t> order;  // per vertex its index in the input; empty when the input's order is not kept
 };
 
+// Whether `order` holds each number below its size once.
+bool IsPermutation(const std::vector<std::uint32_t>& order);
+
 std::vector<std::uint8_t> WriteIFrame(const IFrameSyntax& syntax, const SequenceHeader& header);
 
 // Parses what WriteIFrame() writes. Returns kCorrupt when `payload` breaks a rule of spec.md 5.

@@ -1,10 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <exception>
-#include <optional>
 #include <string>
 
 #include "codec/c_status.h"
@@ -40,8 +38,6 @@ class SourceReader : public ClipReader {
   Positions frame_;
   const sac_frame_source source_;
 };
-
-std::optional<double> Given(double value) { return std::isnan(value) ? std::nullopt : std::optional(value); }
 
 Status Encode(const sac_input_mesh* mesh, const sac_frame_source* source, const sac_encoder_settings* settings,
               sac_byte_sink sink, void* sink_user, sac_clip_result& result) {

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sac/clip_encoder.h"
 
-#include <exception>
-
+#include "codec/encode/contain.h"
 #include "rate_control/measured_encoding.h"
 #include "rate_control/target_search.h"
 #include "rate_control/trial.h"
@@ -50,11 +49,7 @@ Status Encode(ClipReader& clip, const ClipEncoding& encoding, const ByteSink& si
 
 Status EncodeClip(ClipReader& clip, const ClipEncoding& encoding,
                   const std::function<Status(std::span<const std::uint8_t> bytes)>& sink, EncodedClip& result) {
-  try {
-    return Encode(clip, encoding, sink, result);
-  } catch (const std::bad_alloc&) {
-    return Status::Limit("out of memory");
-  }
+  return Contain([&] { return Encode(clip, encoding, sink, result); });
 }
 
 }  // namespace sac

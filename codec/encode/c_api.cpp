@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <cmath>
 #include <cstdint>
 #include <exception>
 #include <limits>
@@ -50,7 +49,7 @@ Status Open(const sac_input_mesh* mesh, const sac_encoder_settings* settings, sa
   sac_encoder_settings s;
   SAC_RETURN_IF_ERROR(sac::ReadSettings(settings, s));
   for (const double target : {s.target_kg, s.target_sted, s.target_bpvf}) {
-    if (!std::isnan(target)) return Status::InvalidArgument("targets take the whole clip: call sac_encode_clip()");
+    if (sac::Given(target)) return Status::InvalidArgument("targets take the whole clip: call sac_encode_clip()");
   }
   sac::EncoderSettings to = sac::ToEncoderSettings(s);
   if (s.progress != nullptr) {

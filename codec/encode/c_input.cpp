@@ -13,8 +13,6 @@ namespace {
 // The size of sac_encoder_settings in its first version.
 constexpr std::size_t kFirstSettings = offsetof(sac_encoder_settings, user) + sizeof(sac_encoder_settings::user);
 
-std::optional<double> Given(double value) { return std::isnan(value) ? std::nullopt : std::optional(value); }
-
 // Copies `count` values of kSize numbers each, if there are any.
 template <class Value, class Number>
 void Copy(const Number* from, std::size_t count, std::vector<Value>& to) {
@@ -27,6 +25,8 @@ void Copy(const Number* from, std::size_t count, std::vector<Value>& to) {
 Status Missing(const char* what) { return Status::InvalidArgument(std::string("mesh: no ") + what); }
 
 }  // namespace
+
+std::optional<double> Given(double value) { return std::isnan(value) ? std::nullopt : std::optional(value); }
 
 Status ReadSettings(const sac_encoder_settings* from, sac_encoder_settings& settings) {
   sac_encoder_settings_init(&settings);

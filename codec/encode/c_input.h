@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 
 #include "sac/encoder.h"
@@ -14,6 +15,9 @@ namespace sac {
 // Takes `from`, which may be null or of an older library with fewer members, over the defaults. kInvalidArgument when
 // its size or a member makes no sense, kUnsupported when it is of a later library.
 Status ReadSettings(const sac_encoder_settings* from, sac_encoder_settings& settings);
+
+// A setting that may be left out: nothing where it is NaN.
+std::optional<double> Given(double value);
 
 // The settings of an encoder, without its progress callback. Targets are not among them.
 EncoderSettings ToEncoderSettings(const sac_encoder_settings& settings);

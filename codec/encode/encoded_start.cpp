@@ -67,7 +67,7 @@ std::vector<std::uint32_t> ShareHarmonics(const DecodedMesh& mesh, std::uint32_t
 
 // Chooses what the settings leave open, by the quality or by the bound on the error. Steps of displacement and detail
 // are fractions of the RMS radius.
-Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, QualitySettings& defaults) {
+Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, double rms, QualitySettings& defaults) {
   if (!settings.max_error) {
     defaults = SettingsOfQuality(
         settings.quality,
@@ -80,7 +80,6 @@ Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, Qualit
             << ", is below the precision of the coordinates; the smallest possible is " << least;
     return Status::InvalidArgument(message.str());
   }
-  const double rms = RmsRadius(first.positions);
   const BoundedSettings bounded = SettingsOfMaxError(*settings.max_error, first.positions);
   defaults = {settings.quality,          bounded.motion_step,   bounded.displacement_step / rms,
               bounded.detail_step / rms, bounded.position_bits, bounded.harmonics};
@@ -88,9 +87,9 @@ Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, Qualit
 }
 
 // The sequence header but for the grid of positions and the number of harmonics.
-SequenceHeader HeaderOf(const Mesh& first, const EncoderSettings& settings, const QualitySettings& defaults) {
+SequenceHeader HeaderOf(const Mesh& first, const EncoderSettings& settings, double rms,
+                        const QualitySettings& defaults) {
   SequenceHeader header;
-  const double rms = RmsRadius(first.positions);
   const double displacement_step = settings.displacement_step.value_or(defaults.displacement_step);
   if (settings.max_error) {
     header.correction_step = static_cast<float>(CorrectionStep(*settings.max_error, first.positions));
@@ -134,8 +133,9 @@ Status EncodeStart(const Mesh& first, const EncoderSettings& settings, double sh
   start = {};
   SAC_RETURN_IF_ERROR(Progress(settings));
   QualitySettings defaults{};
-  SAC_RETURN_IF_ERROR(ChooseDefaults(first, settings, defaults));
-  start.header = HeaderOf(first, settings, defaults);
+  const double rms = RmsRadius(first.positions);
+  SAC_RETURN_IF_ERROR(ChooseDefaults(first, settings, rms, defaults));
+  start.header = HeaderOf(first, settings, rms, defaults);
   start.max_error = settings.max_error.value_or(0);
 
   PositionTargets targets;
@@ -157,15 +157,6 @@ Status EncodeStart(const Mesh& first, const EncoderSettings& settings, double sh
   }
   SAC_RETURN_IF_ERROR(Progress(settings));
   return FinishIFrame(std::move(decoded.mesh), settings.limits, syntax, start);
-}
-
-bool IsPermutation(const std::vector<std::uint32_t>& order) {
-  std::vector<bool> seen(order.size());
-  for (const std::uint32_t i : order) {
-    if (i >= seen.size() || seen[i]) return false;
-    seen[i] = true;
-  }
-  return true;
 }
 
 // Cuts the next packet, which has to be of `type`, from the front of `bytes`.
