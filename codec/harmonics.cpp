@@ -19,7 +19,7 @@ namespace sac {
 namespace {
 
 constexpr double kInhomogeneity = 0.1;
-constexpr std::uint32_t kDenseSize = 96;   // up to here all eigenpairs at once are as quick as the wanted ones
+constexpr Eigen::Index kDenseSize = 96;    // up to here all eigenpairs at once are as quick as the wanted ones
 constexpr int kSpareVectors = 20;          // of Lanczos, beside two for each wanted one
 constexpr double kFunctionsMemory = 1000;  // a vertex, of the radial functions that reach it on a surface
 constexpr double kFunctionMemory = 90;     // of each of them
