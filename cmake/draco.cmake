@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: Apache-2.0
 # draco::draco from the source in SAC_DRACO_SOURCE (`scripts/draco-source` prints such a folder), for platforms for which
 # there is no package of it. These files are those that the libraries link, found by a linker's map.
 set(draco_files

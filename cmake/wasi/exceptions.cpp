@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Debian's libc++ for WebAssembly has no exceptions. What would throw one ends the instance by a trap.
 #include <cstddef>
 

@@ -1,3 +1,4 @@
+// SPDX-License-Identifier: Apache-2.0
 // Runs a program of WebAssembly: node run.mjs PROGRAM STANDARD_INPUT
 import { openSync, readFileSync } from "node:fs";
 import { WASI } from "node:wasi";

@@ -53,6 +53,8 @@ std::vector<std::string> Lines(const std::string& text) {
   return lines;
 }
 
+TEST_F(SweepTest, Help) { EXPECT_NE(Good({"sweep", "--help"}).find("  sac sweep"), std::string::npos); }
+
 TEST_F(SweepTest, SaysWhatEncodeAndCompareSay) {
   Sweep({"--max-errors", "1e-3", "--also", "--reference previous"});
   const nlohmann::json report = Report();
