@@ -78,18 +78,27 @@ Status EncodeAndMeasure(ClipReader& clip, const EncoderSettings& settings, bool 
     return measure ? Named(name, Named("decoding what was encoded", measurement.Take(bytes))) : Status::Ok();
   };
   SAC_RETURN_IF_ERROR(clip.Rewind());
+  // Ends the stream after the last frame that could be coded.
+  const auto fail = [&](const Status& status) {
+    if (!encoder->fault()) return Named(name, status);
+    if (encoder->Finish().ok()) {
+      measure = false;
+      SAC_RETURN_IF_ERROR(take());
+      result.frames = encoder->frames();
+      result.order = encoder->order();
+    }
+    return Named(clip.name_of(encoder->fault()->frame), status);
+  };
   Positions frame;
   for (bool end = false;;) {
     SAC_RETURN_IF_ERROR(clip.Next(frame, end));
     if (end) break;
-    const std::string where = "frame " + std::to_string(result.frames++);
-    if (const Status sent = encoder->Send(frame); !sent.ok()) {
-      return Named(name, sent.code() == StatusCode::kCancelled ? sent : Named(where, sent));
-    }
+    if (const Status sent = encoder->Send(frame); !sent.ok()) return fail(sent);
     if (measure) measurement.Expect(std::move(frame));
     SAC_RETURN_IF_ERROR(take());
   }
-  SAC_RETURN_IF_ERROR(Named(name, encoder->Finish()));
+  if (const Status finished = encoder->Finish(); !finished.ok()) return fail(finished);
+  result.frames = encoder->frames();
   SAC_RETURN_IF_ERROR(take());
   if (measure) SAC_RETURN_IF_ERROR(Named(name, Named("decoding what was encoded", measurement.Finish(result))));
   result.lost_texture_coordinates = result.lost_texture_coordinates && !clip.mesh().uv_triangles.empty();

@@ -69,9 +69,9 @@ std::vector<std::uint32_t> ShareHarmonics(const DecodedMesh& mesh, std::uint32_t
 // are fractions of the RMS radius.
 Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, double rms, QualitySettings& defaults) {
   if (!settings.max_error) {
-    defaults = SettingsOfQuality(
-        settings.quality,
-        settings.harmonics ? *settings.harmonics : MostHarmonics(static_cast<std::uint32_t>(first.positions.size())));
+    HarmonicLimits limits = HarmonicLimitsOf(static_cast<std::uint32_t>(first.positions.size()));
+    if (settings.harmonics) limits.useful = limits.quick = *settings.harmonics;
+    defaults = SettingsOfQuality(settings.quality, limits);
     return Status::Ok();
   }
   if (const double least = LeastMaxError(first.positions); *settings.max_error < least) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "sac/encoder.h"
 
+#include <optional>
 #include <utility>
 
 #include "codec/encode/contain.h"
@@ -44,7 +45,9 @@ Status Encoder::Finish() {
   return impl_->Do([](StreamEncoder& stream) { return stream.Finish(); });
 }
 
+std::uint32_t Encoder::frames() const { return impl_->stream.frames(); }
 std::vector<std::uint8_t> Encoder::TakeBytes() { return impl_->stream.TakeBytes(); }
+std::optional<FrameFault> Encoder::fault() const { return impl_->stream.fault(); }
 const std::vector<std::uint32_t>& Encoder::order() const { return impl_->stream.order(); }
 const StreamInfo& Encoder::info() const { return impl_->stream.info(); }
 const StreamBytes& Encoder::stream_bytes() const { return impl_->stream.stream_bytes(); }

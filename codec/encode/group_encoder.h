@@ -8,36 +8,49 @@
 #include <optional>
 #include <vector>
 
-#include "codec/encode/projection.h"
+#include "codec/encode/frame_encoder.h"
 #include "codec/reconstruct.h"
 #include "codec/shape.h"
 #include "format/frame_syntax.h"
 #include "format/prediction.h"
 #include "format/rigid_motion.h"
 #include "format/sequence_header.h"
-#include "geometry/triangle_fields.h"
 #include "sac/status.h"
 
 namespace sac {
 
-// Chooses the syntax of one group after another, asking the decoder's own Reconstructor what it gives.
+// A group while it is coded. With a chain of P-frames its frames come one after the other; else all are there before
+// the first is coded.
+struct GroupInProgress {
+  std::vector<PositionMatrix> frames;  // by time, in decoded vertex order, model units
+  std::vector<RigidMotion> rigid;      // by time
+  std::vector<FrameSlot> structure;    // in coding order
+  Predictor predictor;                 // has the frames coded so far, in coding order
+
+  // How many frames are coded.
+  std::uint32_t coded() const { return static_cast<std::uint32_t>(predictor.frames().size()); }
+};
+
+// Chooses the syntax of one group after another.
 class GroupEncoder {
  public:
-  // `shape` must outlive it.
-  // `max_error`: how far any vertex may be from where it should be once positions are floats, model units; of no
-  // meaning without a correction plane.
+  // `shape` must outlive it. `max_error`: as of FrameEncoder.
   GroupEncoder(const Shape& shape, const SequenceHeader& header, double max_error);
 
   // `frames`: by time, in decoded vertex order, model units. `structure`: of the same number of frames. Appends the
   // frames in coding order. kInvalidArgument when a value leaves the range of the format, a reference shape cannot be
   // factorized or the bound cannot be held.
   // `frame_done` gets the number of frames of the group that are coded; its failure ends the encoding.
-  Status Encode(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
+  Status Encode(std::vector<PositionMatrix> frames, const std::vector<FrameSlot>& structure,
                 const std::function<Status(std::uint32_t)>& frame_done, std::vector<FrameSyntax>& coded);
 
   // The same for a chain of P-frames whose next is not known yet. Index 0 begins a group. After an error the group
   // cannot go on.
   Status EncodeNext(PositionMatrix positions, std::uint32_t index, FrameSyntax& frame);
+
+  // After a failure of a frame: which of the group it is, by time, and the decoded vertex at fault.
+  std::uint32_t failed_frame() const { return failed_frame_; }
+  std::uint32_t failed_vertex() const { return failed_vertex_; }
 
  private:
   // A rigid motion before quantization: rotation vector and translation in the header's steps, and how far a choice may
@@ -46,59 +59,31 @@ class GroupEncoder {
     std::array<double, 6> value;
     double slack;
   };
+  GroupInProgress NewGroup() const { return {{}, {}, {}, Predictor(header_, shape_.layouts)}; }
   RigidTarget FitTarget(const PositionMatrix& positions);
-  // The rigid motion of each frame, by time, near enough to the best and easy to predict.
-  std::vector<RigidMotion> ChooseRigid(const std::vector<PositionMatrix>& frames,
-                                       const std::vector<FrameSlot>& structure);
-  // The motion plane's coefficients of `aligned` against the present reference shape, in real numbers.
-  Eigen::MatrixXd MeasureMotion(const PositionMatrix& aligned);
-  // The rigid motion of one frame, given those by time that come before it in coding order.
-  static RigidMotion ChooseRigid(const RigidTarget& target, const FrameSlot& slot,
-                                 const std::vector<FrameSlot>& structure, const std::vector<RigidMotion>& rigid);
-  // Chooses the syntax of the frame at the end of `predictor` and adds it there. `motion_target` is measured here
-  // unless there is one reference shape.
-  Status EncodeSlot(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
-                    const RigidMotion& rigid, Eigen::MatrixXd motion_target, Predictor& predictor, FrameSyntax& frame);
-  // Makes `frame` repeat an earlier one exactly if its input does; false if it does not.
-  bool RepeatFrame(const std::vector<PositionMatrix>& frames, const std::vector<FrameSlot>& structure,
-                   const Predictor& predictor, FrameSyntax& frame) const;
-  // Quantizes what `target` is beyond the prediction in `coefficients`, and adds it there.
-  void Quantize(Plane plane, const Eigen::MatrixXd& target, FrameCoefficients& coefficients, FrameSyntax& frame) const;
-  // From the references of `frame`: its motion plane, and about how many bits it costs with the rigid motion.
-  // `coefficients`: the prediction, with the motion plane that results.
-  double ChooseMotion(const RigidMotion& rigid, const Eigen::MatrixXd& motion_target, const Predictor& predictor,
-                      FrameSyntax& frame, FrameCoefficients& coefficients) const;
-  // Chooses references other than the structure's where they are cheaper, then motion and displacement. What these
-  // leave of `aligned`.
-  PositionMatrix ChooseReferences(const PositionMatrix& aligned, const RigidMotion& rigid,
-                                  const Eigen::MatrixXd& motion_target, const Predictor& predictor, FrameSyntax& frame,
-                                  FrameCoefficients& coefficients);
-  // Chooses references and the planes' residuals.
-  Status ChoosePlanes(const PositionMatrix& positions, const RigidMotion& rigid, const Eigen::MatrixXd& motion_target,
-                      const Predictor& predictor, FrameSyntax& frame);
-  // Whether exact + error, rounded to floats, is within the bound.
-  Status CheckBound(const PositionMatrix& exact, const PositionMatrix& error) const;
-  bool UsesKeyReference() const { return !header_.references_previous(); }
+  // Chooses the rigid motion of a frame, given those that come before it in coding order: near enough to the target and
+  // easy to predict.
+  static RigidMotion ChooseRigid(const RigidTarget& target, const FrameSlot& slot, const GroupInProgress& group);
+  // Chooses the syntax of the next frame in coding order and adds it to the predictor. `motion`: what MeasureMotion()
+  // gives for it against M'0, where that is the reference shape.
+  Status EncodeFrame(GroupInProgress& group, Eigen::MatrixXd motion, FrameSyntax& frame);
+  // Makes the next frame repeat an earlier one exactly if its input does; false if it does not.
+  bool RepeatFrame(const GroupInProgress& group, FrameSyntax& frame) const;
+  // Makes the first frame of a group repeat the last of the group before, coded from zero; false likewise.
+  bool RepeatLastGroup(const PositionMatrix& positions, FrameSyntax& frame) const;
+  // Keeps what failed_frame() and failed_vertex() tell.
+  Status Fail(Status status, std::uint32_t frame, std::uint32_t vertex);
+  // Keeps the last frame of a group, which the next may begin with.
+  void KeepLast(const GroupInProgress& group);
 
   const Shape& shape_;
   SequenceHeader header_;
-  TriangleFields fields_;
-  Projection projection_;
-  std::array<Eigen::VectorXd, 3> units_;  // of the planes in harmonics
-  double max_error_;
-  Reconstructor reconstructor_;
-  // The group that EncodeNext is in.
-  struct Chain {
-    std::vector<PositionMatrix> frames;
-    std::vector<FrameSlot> structure;
-    std::vector<RigidMotion> rigid;
-    Predictor predictor;
-  };
-  std::optional<Chain> chain_;
+  FrameEncoder frame_encoder_;
+  std::optional<GroupInProgress> chain_;  // the group that EncodeNext() is in
   Eigen::Vector3d last_rotation_ = Eigen::Vector3d::Zero();
-  // The last frame of the group before, to stand still across the border.
-  PositionMatrix last_positions_;
+  PositionMatrix last_positions_;  // of the last frame of the group before
   FrameCoefficients last_;
+  std::uint32_t failed_frame_ = 0, failed_vertex_ = 0;
 };
 
 }  // namespace sac

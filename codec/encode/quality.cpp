@@ -28,7 +28,7 @@ constexpr std::array<QualitySettings, 11> kTable = {{
 constexpr double kLeastDetail = 0.02;
 
 // Start time goes with vertices x harmonics^2, memory with their product.
-constexpr double kLeastCap = 200, kVerticesPerHarmonic = 9, kMostBasisValues = 12e6;
+constexpr double kLeastCap = 200, kVerticesPerHarmonic = 9, kMostBasisValues = 12e6, kMostHarmonics = 1000;
 
 QualitySettings Between(const QualitySettings& low, const QualitySettings& high, double quality) {
   const double t = (quality - low.quality) / (high.quality - low.quality);
@@ -53,17 +53,20 @@ QualitySettings Interpolate(const std::vector<QualitySettings>& rows, double qua
 
 }  // namespace
 
-double MostHarmonics(std::uint32_t vertices) {
+HarmonicLimits HarmonicLimitsOf(std::uint32_t vertices) {
   const double n = vertices;
-  return std::max(kLeastCap, std::min({n / kVerticesPerHarmonic, kMostBasisValues / n, 1000.0}));
+  return {std::max(kLeastCap, n / kVerticesPerHarmonic),
+          std::max(kLeastCap, std::min(kMostBasisValues / n, kMostHarmonics))};
 }
 
-QualitySettings SettingsOfQuality(double quality, double most_harmonics) {
+QualitySettings SettingsOfQuality(double quality, const HarmonicLimits& limits) {
   std::vector<QualitySettings> rows;
   for (const QualitySettings& row : kTable) {
-    if (row.harmonics <= std::max(kLeastCap, most_harmonics)) rows.push_back(row);
+    if (row.harmonics <= std::max(kLeastCap, limits.useful)) rows.push_back(row);
   }
-  return Interpolate(rows, quality);
+  QualitySettings settings = Interpolate(rows, quality);
+  settings.harmonics = std::min(settings.harmonics, std::max(kLeastCap, limits.quick));
+  return settings;
 }
 
 QualitySettings SmoothSettingsOfQuality(double quality, double most_harmonics) {

@@ -18,13 +18,22 @@ struct QualitySettings {
 // From here on there is detail; a little sooner where there are not enough harmonics for what comes before.
 inline constexpr double kDetailQuality = 75;
 
-// The most harmonics that pay in a mesh: in a small one they approach a code for every vertex, which detail does
-// better; in a large one decoders would take long to start. 200 at least.
-double MostHarmonics(std::uint32_t vertices);
+// How many harmonics a mesh takes, 200 at least.
+struct HarmonicLimits {
+  // Where more pay less than detail does: in a small mesh they approach a code for every vertex.
+  double useful;
+  // Where decoders would take too long to start, or too much memory, with more: in a large mesh. What comes short of
+  // them is still better than detail.
+  double quick;
+
+  double most() const { return useful < quick ? useful : quick; }
+};
+HarmonicLimits HarmonicLimitsOf(std::uint32_t vertices);
 
 // `quality` from 0 to 100, and beyond with the last rows' ratios: from a table measured on several clips
-// (docs/quality.md), interpolated between those of its rows that have no more than `most_harmonics`, or 200.
-QualitySettings SettingsOfQuality(double quality, double most_harmonics);
+// (docs/quality.md), interpolated between those of its rows that have no more than `limits.useful` harmonics; the
+// result has no more than `limits.quick`.
+QualitySettings SettingsOfQuality(double quality, const HarmonicLimits& limits);
 
 // The same without detail: beyond kDetailQuality the other steps become finer.
 QualitySettings SmoothSettingsOfQuality(double quality, double most_harmonics);

@@ -32,14 +32,28 @@ StreamEncoder::StreamEncoder(EncodedStart start, const EncoderSettings& settings
   writer_.Start(WriteSequenceHeader(start_.header), start_.i_frame);
 }
 
+Status StreamEncoder::AtFault(Status status, std::uint32_t frame, std::optional<std::uint32_t> vertex) {
+  if (status.code() != StatusCode::kInvalidArgument) return status;
+  fault_ = {frame, vertex};
+  return Status::InvalidArgument("frame " + std::to_string(frame) +
+                                 (vertex ? ", vertex " + std::to_string(*vertex) : std::string()) + ": " +
+                                 status.message());
+}
+
+Status StreamEncoder::AtFault(Status status, std::uint32_t first) {
+  return AtFault(std::move(status), first + encoder_.failed_frame(), start_.order[encoder_.failed_vertex()]);
+}
+
 Status StreamEncoder::Send(std::span<const Vec3f> positions) {
   if (finished_) return Status::InvalidArgument("the stream is finished");
   SAC_RETURN_IF_ERROR(failure_);
+  const auto frame = writer_.frames() + static_cast<std::uint32_t>(waiting_.size());
   if (positions.size() != start_.order.size()) {
-    return Status::InvalidArgument(std::to_string(positions.size()) + " vertices, expected " +
-                                   std::to_string(start_.order.size()));
+    return AtFault(Status::InvalidArgument(std::to_string(positions.size()) + " vertices, expected " +
+                                           std::to_string(start_.order.size())),
+                   frame, std::nullopt);
   }
-  SAC_RETURN_IF_ERROR(CheckFinite(positions));
+  SAC_RETURN_IF_ERROR(AtFault(CheckFinite(positions), frame, std::nullopt));
   PositionMatrix ordered = InDecodedOrder(positions, start_.order);
   if (settings_.low_delay) return Latch(EncodeFrame(std::move(ordered)));
   waiting_.push_back(std::move(ordered));
@@ -58,12 +72,11 @@ Status StreamEncoder::EncodeFrame(PositionMatrix positions) {
     coder_.emplace(start_.header, start_.shape.layouts);
   }
   FrameSyntax frame;
-  SAC_RETURN_IF_ERROR(encoder_.EncodeNext(std::move(positions), open_frames_, frame));
+  SAC_RETURN_IF_ERROR(
+      AtFault(encoder_.EncodeNext(std::move(positions), open_frames_, frame), writer_.frames() - open_frames_));
   RangeEncoder range;  // each frame ends with a whole byte; the models go on
   FrameBits bits;
-  if (!coder_->Code(range, ChainSlot(open_frames_), frame, &bits)) {
-    return Status::InvalidArgument("the motion is too far from the first frame for these steps");
-  }
+  if (!coder_->Code(range, ChainSlot(open_frames_), frame, &bits)) return AtFault(MotionTooFar(), writer_.frames(), {});
   writer_.Frame(range.Finish(), bits);
   if (IsFull(++open_frames_)) EndOpenGroup();
   return Progress(writer_.frames());
@@ -84,20 +97,21 @@ Status StreamEncoder::EncodeGroup() {
   FrameBits bits;
   const std::uint32_t before = writer_.frames();
   const auto frame_done = [&](std::uint32_t count) { return Progress(before + count); };
-  SAC_RETURN_IF_ERROR(encoder_.Encode(waiting_, structure, frame_done, coded));
+  SAC_RETURN_IF_ERROR(AtFault(encoder_.Encode(std::exchange(waiting_, {}), structure, frame_done, coded), before));
   for (std::size_t i = 0; i < coded.size(); ++i) {
     if (!coder.Code(range, structure[i], coded[i], &bits)) {
-      return Status::InvalidArgument("the motion is too far from the first frame for these steps");
+      return AtFault(MotionTooFar(), before + structure[i].display, {});
     }
   }
   writer_.Group({frames, writer_.frames(), pyramid}, range.Finish(), bits);
-  waiting_.clear();
   return Status::Ok();
 }
 
 Status StreamEncoder::Finish() {
   if (finished_) return Status::InvalidArgument("the stream is finished");
-  SAC_RETURN_IF_ERROR(failure_);
+  // After a frame that cannot be coded the stream ends with what was complete before it.
+  const bool ends_early = failure_.code() == StatusCode::kInvalidArgument && writer_.frames() > 0;
+  if (!ends_early) SAC_RETURN_IF_ERROR(failure_);
   EndOpenGroup();
   if (!waiting_.empty()) SAC_RETURN_IF_ERROR(Latch(EncodeGroup()));
   writer_.End();

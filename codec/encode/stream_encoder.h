@@ -42,8 +42,16 @@ class StreamEncoder {
   const std::vector<std::uint32_t>& order() const { return start_.order; }
   const StreamInfo& info() const { return info_; }
   const StreamBytes& stream_bytes() const { return writer_.sizes(); }
+  std::uint32_t frames() const { return writer_.frames(); }
+  std::optional<FrameFault> fault() const { return fault_; }
 
  private:
+  // Keeps `status`, when it is a failure of the frame whose index in the stream and whose vertex in the input are
+  // given, and returns it with both in its message.
+  Status AtFault(Status status, std::uint32_t frame, std::optional<std::uint32_t> vertex);
+  // The same for a failure of the group encoder, whose group begins with frame `first`.
+  Status AtFault(Status status, std::uint32_t first);
+
   // Whether a group of `frames` frames takes no more.
   bool IsFull(std::uint32_t frames) const;
   // Tells the caller that `frames` frames are coded; kCancelled when it wants no more.
@@ -68,6 +76,7 @@ class StreamEncoder {
   std::optional<FrameCoder<RangeEncoder>> coder_;
   std::uint32_t open_frames_ = 0;
   Status failure_;
+  std::optional<FrameFault> fault_;
 };
 
 }  // namespace sac

@@ -33,6 +33,8 @@ class ClipReader {
   virtual std::optional<std::uint32_t> frame_count() const { return std::nullopt; }
   // The beginning of messages about the clip as a whole, such as the path of its file.
   virtual std::string name() const { return {}; }
+  // The beginning of messages about one frame, such as the path of the file that holds it.
+  virtual std::string name_of(std::uint32_t /*frame*/) const { return name(); }
 
   // Reads the next frame, beginning with the first, in the vertex order of mesh(), model units. After the last frame
   // `end` becomes true and `frame` stays as it is. A message names the file and the frame at fault.

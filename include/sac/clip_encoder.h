@@ -48,9 +48,9 @@ struct EncodedClip {
   StreamBytes parts;
   std::vector<std::uint32_t> order;  // per decoded vertex its index in the input
   std::uint64_t bytes = 0;           // of the whole stream
-  std::uint32_t frames = 0;
-  std::uint32_t trials = 0;      // encodings that a search has made
-  DistortionMetrics distortion;  // of what a decoder makes of the stream; all zero where it was not measured
+  std::uint32_t frames = 0;          // in the stream
+  std::uint32_t trials = 0;          // encodings that a search has made
+  DistortionMetrics distortion;      // of what a decoder makes of the stream; all zero where it was not measured
   // True if the input's texture coordinates could not be coded; known where the stream was decoded.
   bool lost_texture_coordinates = false;
 
@@ -65,7 +65,9 @@ struct EncodedClip {
 // Memory holds the frames of a group, whatever the length of the clip.
 //
 // kInvalidArgument for settings, a mesh or frames that cannot be coded, and, saying what was reached, for targets that
-// cannot be met; kLimit where decoders would refuse the stream; kCancelled; the errors of `clip` and `sink`.
+// cannot be met; kLimit where decoders would refuse the stream; kCancelled; the errors of `clip` and `sink`. When a
+// frame cannot be coded, `sink` has got a whole stream of the result.frames frames before it, if that is not 0, and
+// result.order is set.
 Status EncodeClip(ClipReader& clip, const ClipEncoding& encoding,
                   const std::function<Status(std::span<const std::uint8_t> bytes)>& sink, EncodedClip& result);
 

@@ -45,6 +45,13 @@ struct EncoderSettings {
   Limits limits;
 };
 
+// What a failure is about: a frame by its index in the stream and, where one is at fault, a vertex in the order of the
+// input.
+struct FrameFault {
+  std::uint32_t frame = 0;
+  std::optional<std::uint32_t> vertex;
+};
+
 // Turns frames into a stream, one at a time. Holds one group, not the clip. With low_delay a frame's bytes can be taken
 // as soon as it is sent; otherwise those of a group when it is full.
 //
@@ -66,11 +73,19 @@ class Encoder {
   Encoder& operator=(const Encoder&) = delete;
 
   // The next frame, in the vertex order of `first_frame`, model units. kInvalidArgument when the number of vertices
-  // differs or a coordinate is not finite; the encoder can go on with another frame then.
+  // differs or a coordinate is not finite; the encoder can go on with another frame then. kInvalidArgument, too, when
+  // the motion cannot be coded or the bound cannot be held, here or in a frame before: no more frames can be sent, but
+  // Finish() still ends the stream after the last group, or with low_delay the last frame, that was coded. The message
+  // says which frame and vertex it is.
   Status Send(std::span<const Vec3f> positions);
-  // Ends the stream.
+  // Ends the stream. It fails with Send()'s failure when nothing was coded before.
   Status Finish();
 
+  // The frame and the vertex that the last failure of Send() or Finish() was about.
+  std::optional<FrameFault> fault() const;
+
+  // How many frames have been coded.
+  std::uint32_t frames() const;
   // What has been coded since the last call.
   std::vector<std::uint8_t> TakeBytes();
 
