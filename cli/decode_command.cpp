@@ -13,7 +13,9 @@
 
 #include "cli/commands.h"
 #include "cli/decoded_frames.h"
+#include "cli/number_option.h"
 #include "cli/progress.h"
+#include "cli/warning_report.h"
 #include "files/clip_output.h"
 #include "files/overwriting.h"
 #include "files/stream_input.h"
@@ -32,7 +34,8 @@ struct WantedFrames {
 struct DecodeOptions {
   std::string input, output, order_map;
   WantedFrames frames;
-  bool skip_damage = false;
+  std::uint32_t first_number = 0;  // of the first frame, in the names of a sequence
+  bool skip_damage = false, force = false, strict = false;
 };
 
 bool ParseFrameNumber(std::string_view text, std::uint32_t& number) {
@@ -78,6 +81,7 @@ class Decoding {
   // Frames before `index` that are lost get the positions of the one before, or of the next where none is.
   Status FillUpTo(std::uint32_t index, const Positions& next);
   Status Write(std::uint32_t index, const Positions& positions);
+  Status Commit();
 
   const DecodeOptions& options_;
   VertexOrder order_;  // empty: as decoded
@@ -94,6 +98,7 @@ Status Decoding::OpenOutput(const Decoder& decoder) {
     SAC_RETURN_IF_ERROR(ReadOrderMap(options_.order_map, mesh.positions.size(), order_));
   }
   ClipOutput::Settings settings;
+  settings.force = options_.force;
   settings.fps = decoder.info()->frame_rate_numerator == 0 ? kFpsOfUnknown : decoder.info()->frames_per_second();
   // A pipe cannot be told the number at the end. Elsewhere it is not promised before the stream has shown as many.
   if (std::error_code error; options_.frames.end && std::filesystem::is_fifo(options_.output, error)) {
@@ -104,7 +109,8 @@ Status Decoding::OpenOutput(const Decoder& decoder) {
 
 Status Decoding::Write(std::uint32_t index, const Positions& positions) {
   written_ = index + 1;
-  return output_->Write(index, order_.empty() ? positions : ToInputOrder(positions, order_));
+  return output_->Write(std::uint64_t{index} + options_.first_number,
+                        order_.empty() ? positions : ToInputOrder(positions, order_));
 }
 
 Status Decoding::FillUpTo(std::uint32_t index, const Positions& next) {
@@ -157,6 +163,17 @@ Status Decoding::Run() {
                                    std::to_string(output_ ? *range.end - 1 : range.begin) + ", the last one is " +
                                    std::to_string(count - 1));
   }
+  return Commit();
+}
+
+Status Decoding::Commit() {
+  Warnings warnings;
+  // Who asks for some of the frames may have others there on purpose.
+  const bool whole = options_.frames.begin == 0 && !options_.frames.end;
+  if (const std::string stale = whole ? output_->StaleFrames() : std::string(); !stale.empty()) {
+    warnings.push_back(options_.output + ": frames " + stale + " are there from before and do not belong to this clip");
+  }
+  SAC_RETURN_IF_ERROR(TellWarnings(warnings, options_.strict));
   return output_->Commit();
 }
 
@@ -189,6 +206,10 @@ Command AddDecodeCommand(CLI::App& app) {
       ->option_text("FILE");
   command->add_flag("--skip-damage", options->skip_damage,
                     "go on after damage with the next group that is sound, and tell which frames are lost");
+  AddNumber(*command, "--first-number", options->first_number, 0u, 0xffffffffu,
+            "the number of frame 0 in the names of a sequence [0]");
+  command->add_flag("--force", options->force, "replace a mesh that is there beside the cache to write");
+  AddStrict(*command, options->strict);
   command->footer(
       "The vertices come in the order of the encoder's input if the stream keeps it or a map gives it. An MDD has\n"
       "times; where the stream has no frame rate they are those of 24 frames a second. Files get their names when all\n"

@@ -12,9 +12,11 @@
 
 #include "cli/commands.h"
 #include "cli/encoding_report.h"
+#include "cli/encoding_warnings.h"
 #include "cli/error_option.h"
 #include "cli/number_option.h"
 #include "cli/progress.h"
+#include "cli/warning_report.h"
 #include "files/cache_file.h"
 #include "files/clip_input.h"
 #include "files/frame_rate.h"
@@ -39,7 +41,8 @@ struct EncodeOptions {
   std::optional<ErrorLength> max_error;  // becomes the encoder's
   std::optional<double> quality;
   std::string reference = "key";
-  bool json = false;
+  std::string gaps = "error";
+  bool json = false, strict = false;
 };
 
 Status CheckOptions(EncodeOptions& options) {
@@ -90,11 +93,14 @@ Status TakeMaxError(const EncodeOptions& options, const Mesh& mesh, EncoderSetti
 }
 
 // The files get their names at the end. Every message names a file.
-Status EncodeFiles(const EncodeOptions& options, EncodedClip& encoded) {
+Status EncodeFiles(const EncodeOptions& options, EncodedClip& encoded, Warnings& warnings) {
   Progress progress;
   progress.Begin("harmonics");
   std::unique_ptr<ClipInput> input;
-  SAC_RETURN_IF_ERROR(ClipInput::Open(options.inputs, input));
+  ClipInput::Settings reading;
+  reading.gaps = options.gaps == "hold" ? Gaps::kHold : options.gaps == "skip" ? Gaps::kSkip : Gaps::kError;
+  SAC_RETURN_IF_ERROR(ClipInput::Open(options.inputs, reading, input));
+  if (options.strict) SAC_RETURN_IF_ERROR(TellWarnings(input->warnings(), true));  // better now than after the encoding
   ClipEncoding encoding = options.encoding;
   SAC_RETURN_IF_ERROR(TakeMaxError(options, input->mesh(), encoding.encoder));
   // The outputs before the harmonics, which take long.
@@ -108,27 +114,38 @@ Status EncodeFiles(const EncodeOptions& options, EncodedClip& encoded) {
     return true;
   };
   const auto sink = [&stream](std::span<const std::uint8_t> bytes) { return stream.Write(bytes.data(), bytes.size()); };
-  SAC_RETURN_IF_ERROR(EncodeClip(*input, encoding, sink, encoded));
+  const Status coded = EncodeClip(*input, encoding, sink, encoded);
+  if (!coded.ok() && encoded.frames == 0) return coded;
+  warnings = input->warnings();
+  if (coded.ok()) {
+    const double diagonal = BoundingBox(input->mesh().positions).diagonal();
+    for (std::string& line : EncodingWarnings(input->name(), encoding, encoded, diagonal)) {
+      warnings.push_back(std::move(line));
+    }
+  }
+  if (options.strict) SAC_RETURN_IF_ERROR(TellWarnings(warnings, true));
   if (!options.order_map.empty()) {
     SAC_RETURN_IF_ERROR(order_map.Write(FormatOrderMap(encoded.order)));
     SAC_RETURN_IF_ERROR(order_map.Close());  // the disk may be full
   }
   SAC_RETURN_IF_ERROR(stream.Commit());
-  return options.order_map.empty() ? Status::Ok() : order_map.Commit();
+  if (!options.order_map.empty()) SAC_RETURN_IF_ERROR(order_map.Commit());
+  if (coded.ok()) return coded;
+  return {coded.code(), coded.message() + "; " + (options.output == "-" ? "standard output" : options.output) +
+                            " has the " + std::to_string(encoded.frames) + " frames before"};
 }
 
 Status Encode(const EncodeOptions& options) {
   const auto start = std::chrono::steady_clock::now();
   EncodedClip encoded;
-  SAC_RETURN_IF_ERROR(EncodeFiles(options, encoded));
+  Warnings warnings;
+  const Status status = EncodeFiles(options, encoded, warnings);
   const double seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-  if (encoded.lost_texture_coordinates) {
-    std::fprintf(stderr, "sac: warning: %s: its texture coordinates cannot be coded, the stream has none\n",
-                 options.inputs.front().c_str());
-  }
+  if (!options.strict) SAC_RETURN_IF_ERROR(TellWarnings(warnings, false));
+  SAC_RETURN_IF_ERROR(status);
   std::FILE* file = IsStandardOutput(options.output) ? stderr : stdout;
   if (options.json) {
-    std::fputs(JsonLine(EncodingJson(options.encoding, encoded, seconds)).c_str(), file);
+    std::fputs(JsonLine(EncodingJson(options.encoding, encoded, warnings, seconds)).c_str(), file);
   } else {
     PrintEncoding(options.encoding, encoded, seconds, file);
   }
@@ -152,9 +169,11 @@ void AddFrameRate(CLI::App& app, EncoderSettings& encoder) {
 
 void AddOptions(CLI::App& app, EncodeOptions& o) {
   EncoderSettings& encoder = o.encoding.encoder;
-  app.add_option("INPUT", o.inputs,
-                 "a mesh and its point cache (mesh.obj clip.pc2, mesh.ply clip.mdd), or meshes one a frame, or a "
-                 "pattern of them (frame_%04d.obj); .obj, .ply, .off, .stl, .om")
+  app.add_option(
+         "INPUT", o.inputs,
+         "a mesh and its point cache (mesh.obj clip.pc2, mesh.ply clip.mdd), or meshes one a frame, or a "
+         "pattern of them (frame_%04d.obj, frame_####.obj, frame_$F4.obj, or 'frame_*.obj' in quotes), or their "
+         "directory; .obj, .ply, .off, .stl, .om")
       ->required()
       ->option_text("...");
   app.add_option("-o,--output", o.output, "the stream to write; - is standard output")->required()->option_text("FILE");
@@ -199,6 +218,13 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
   app.add_option("--order-map", o.order_map, "write the order of the vertices to a file, for decode --order-map")
       ->option_text("FILE");
   app.add_flag("!--unchecked", o.encoding.measure, "neither decode nor measure what is written: in half the time");
+  app.add_option(
+         "--gaps", o.gaps,
+         "what becomes of numbers that are missing in a sequence of meshes: error, hold (the frame before stands "
+         "for them) or skip [error]")
+      ->check(CLI::IsMember(std::vector<std::string>{"error", "hold", "skip"}))
+      ->option_text("WHAT");
+  AddStrict(app, o.strict);
   app.add_flag("--json", o.json, "report sizes in bytes, distortion and settings as one JSON object");
 }
 

@@ -24,7 +24,7 @@ std::vector<std::pair<const char*, long long>> Parts(const StreamBytes& parts) {
 
 }  // namespace
 
-Json EncodingJson(const ClipEncoding& encoding, const EncodedClip& encoded, double seconds) {
+Json EncodingJson(const ClipEncoding& encoding, const EncodedClip& encoded, const Warnings& warnings, double seconds) {
   const auto or_null = [](const auto& value) { return value ? Json(*value) : Json(); };
   const StreamInfo& info = encoded.info;
   Json json;
@@ -38,6 +38,7 @@ Json EncodingJson(const ClipEncoding& encoding, const EncodedClip& encoded, doub
   json["harmonics"] = info.harmonics;
   json["seconds"] = seconds;
   if (encoding.targets.any()) json["trials"] = encoded.trials;
+  json["warnings"] = warnings;
   const EncoderSettings& encoder = encoded.settings;
   Json& settings = json["settings"];
   settings["target_kg"] = or_null(encoding.targets.kg);

@@ -8,6 +8,7 @@
 #include "cli/commands.h"
 #include "cli/number_option.h"
 #include "cli/progress.h"
+#include "cli/warning_report.h"
 #include "files/clip_output.h"
 #include "synth/synth.h"
 
@@ -17,6 +18,7 @@ namespace {
 struct SynthOptions {
   std::string kind, output;
   SynthSettings settings;
+  bool force = false;
 };
 
 Status CheckOptions(SynthOptions& options) {
@@ -38,10 +40,15 @@ Status Synthesize(const SynthOptions& options) {
   progress.Begin("shape");
   SAC_RETURN_IF_ERROR(SynthClip::Create(options.settings, clip));
   std::unique_ptr<ClipOutput> output;
-  SAC_RETURN_IF_ERROR(ClipOutput::Open(options.output, clip.mesh(), {clip.rate().per_second(), clip.frames()}, output));
+  SAC_RETURN_IF_ERROR(
+      ClipOutput::Open(options.output, clip.mesh(), {clip.rate().per_second(), clip.frames(), options.force}, output));
   for (std::uint32_t f = 0; f < clip.frames(); ++f) {
     SAC_RETURN_IF_ERROR(output->Write(f, clip.Frame(f)));
     progress.FramesDone(f + 1);
+  }
+  if (const std::string stale = output->StaleFrames(); !stale.empty()) {
+    SAC_RETURN_IF_ERROR(TellWarnings(
+        {options.output + ": frames " + stale + " are there from before and do not belong to this clip"}, false));
   }
   return output->Commit();
 }
@@ -58,6 +65,7 @@ Command AddSynthCommand(CLI::App& app) {
   command->add_option("-o,--output", options->output, "clip.pc2, clip.mdd or a pattern, as for decode")
       ->required()
       ->option_text("OUT");
+  command->add_flag("--force", options->force, "replace a mesh that is there beside the cache to write");
   constexpr std::uint32_t kMost = std::numeric_limits<std::uint32_t>::max();
   AddNumber(*command, "--vertices", options->settings.vertices, 1u, kMaxSynthVertices,
             "about how many; the number that comes out is within 15 % from 500 on [5000]");

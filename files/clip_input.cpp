@@ -2,11 +2,9 @@
 #include "files/clip_input.h"
 
 #include <cmath>
-#include <filesystem>
 #include <limits>
-#include <system_error>
+#include <utility>
 
-#include "files/frame_pattern.h"
 #include "files/frame_rate.h"
 #include "files/mesh_file.h"
 
@@ -34,7 +32,8 @@ Status CheckCacheFrame(const Positions& positions, const std::string& path, std:
 
 }  // namespace
 
-Status ClipInput::Open(const std::vector<std::string>& arguments, std::unique_ptr<ClipInput>& input) {
+Status ClipInput::Open(const std::vector<std::string>& arguments, const Settings& settings,
+                       std::unique_ptr<ClipInput>& input) {
   if (arguments.empty()) return Status::InvalidArgument("no input");
   auto opened = std::make_unique<ClipInput>();
   opened->name_ = arguments[0];
@@ -43,18 +42,12 @@ Status ClipInput::Open(const std::vector<std::string>& arguments, std::unique_pt
       return Status::InvalidArgument(arguments[i] + ": a cache comes alone after its mesh file");
     }
   }
-  std::error_code ignored;
   if (arguments.size() == 2 && IsCacheName(arguments[1])) {
     SAC_RETURN_IF_ERROR(opened->OpenCache(arguments[0], arguments[1]));
   } else {
-    if (arguments.size() == 1 && FramePattern::IsPattern(arguments[0]) &&
-        !std::filesystem::exists(arguments[0], ignored)) {
-      FramePattern pattern;
-      SAC_RETURN_IF_ERROR(FramePattern::Parse(arguments[0], pattern));
-      SAC_RETURN_IF_ERROR(pattern.List(opened->paths_));
-    } else {
-      opened->paths_ = arguments;
-    }
+    FrameSequence sequence;
+    SAC_RETURN_IF_ERROR(FindSequence(arguments, settings.gaps, sequence, opened->warnings_));
+    opened->paths_ = std::move(sequence.paths);
     SAC_RETURN_IF_ERROR(opened->OpenSequence());
   }
   input = std::move(opened);

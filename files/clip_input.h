@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "files/cache_file.h"
+#include "files/frame_sequence.h"
+#include "files/warnings.h"
 #include "sac/clip.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
@@ -18,9 +20,17 @@ namespace sac {
 // Memory is one frame, whatever their number. Every message starts with the path of the file at fault.
 class ClipInput : public ClipReader {
  public:
-  // `arguments` are `mesh.EXT cache.pc2|.mdd`, or one or several mesh files, or one pattern such as `frame_%04d.ply`
-  // (see FramePattern; an existing file of that very name comes first). Reads the first frame.
-  static Status Open(const std::vector<std::string>& arguments, std::unique_ptr<ClipInput>& input);
+  struct Settings {
+    Gaps gaps = Gaps::kError;
+  };
+
+  // `arguments` are `mesh.EXT cache.pc2|.mdd`, or what FindSequence() takes: one or several mesh files, a pattern such
+  // as `frame_%04d.ply`, or a directory. Reads the first frame.
+  static Status Open(const std::vector<std::string>& arguments, const Settings& settings,
+                     std::unique_ptr<ClipInput>& input);
+
+  // What the files hold and the clip does not, so far.
+  const Warnings& warnings() const { return warnings_; }
 
   // The first frame: triangles and attributes of the (first) mesh file; with a cache, the positions are the cache's.
   const Mesh& mesh() const override { return mesh_; }
@@ -33,6 +43,8 @@ class ClipInput : public ClipReader {
 
   // The first file.
   std::string name() const override { return name_; }
+  // The cache, or the frame's own file.
+  std::string name_of(std::uint32_t frame) const override { return cache_ ? cache_->path() : paths_[frame]; }
 
   // kInvalidArgument for another number of vertices, other triangles, or a coordinate that is NaN or infinite.
   Status Next(Positions& frame, bool& end) override;
@@ -46,6 +58,7 @@ class ClipInput : public ClipReader {
 
   std::string name_;
   Mesh mesh_;
+  Warnings warnings_;
   std::vector<std::string> paths_;  // of a sequence
   std::unique_ptr<CacheReader> cache_;
   std::uint32_t next_ = 0;

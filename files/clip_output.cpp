@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "files/clip_output.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <map>
 #include <utility>
 
 #include "files/mesh_file.h"
+#include "files/overwriting.h"
 
 namespace sac {
 
@@ -18,20 +21,25 @@ Status ClipOutput::Open(const std::string& path, const Mesh& mesh, const Setting
   auto opened = std::make_unique<ClipOutput>();
   opened->path_ = path;
   opened->mesh_ = mesh;
+  opened->force_ = settings.force;
   if (IsCacheName(path)) {
     SAC_RETURN_IF_ERROR(
         CacheWriter::Open(path, mesh.positions.size(), settings.fps, settings.frame_count, opened->cache_));
   } else if (FramePattern::IsPattern(path)) {
     SAC_RETURN_IF_ERROR(FramePattern::Parse(path, opened->pattern_.emplace()));
+    if (opened->pattern_->any_digits()) {
+      return Status::InvalidArgument(path + ": * is for reading; write the frame number as %d or %04d");
+    }
   }
   output = std::move(opened);
   return Status::Ok();
 }
 
-Status ClipOutput::WriteMeshFile(const std::string& path, const Positions& positions) {
+Status ClipOutput::WriteMeshFile(const std::string& path, const Positions& positions, bool named) {
   mesh_.positions = positions;
   std::string bytes;
   SAC_RETURN_IF_ERROR(FormatMesh(path, mesh_, bytes));
+  if (!named && !force_) SAC_RETURN_IF_ERROR(CheckUnnamed(path, bytes));
   OutputFile file;
   SAC_RETURN_IF_ERROR(file.Open(path));
   SAC_RETURN_IF_ERROR(file.Write(bytes));
@@ -45,17 +53,30 @@ Status ClipOutput::Write(std::uint64_t number, const Positions& positions) {
     return Status::InvalidArgument(path_ + ": a frame of " + std::to_string(positions.size()) + " vertices, not " +
                                    std::to_string(mesh_.positions.size()));
   }
-  if (pattern_) return WriteMeshFile(pattern_->Path(number), positions);
+  if (pattern_) {
+    last_number_ = std::max(last_number_, static_cast<std::int64_t>(number));
+    return WriteMeshFile(pattern_->Path(static_cast<std::int64_t>(number)), positions, true);
+  }
   if (!cache_) {
     if (!mesh_files_.empty()) {
       return Status::InvalidArgument(path_ + ": more than one frame needs a cache or a pattern such as x_%04d.obj");
     }
-    return WriteMeshFile(path_, positions);
+    return WriteMeshFile(path_, positions, true);
   }
   if (mesh_files_.empty()) {
-    SAC_RETURN_IF_ERROR(WriteMeshFile(std::filesystem::path(path_).replace_extension(".obj").string(), positions));
+    SAC_RETURN_IF_ERROR(
+        WriteMeshFile(std::filesystem::path(path_).replace_extension(".obj").string(), positions, false));
   }
   return cache_->Write(positions);
+}
+
+std::string ClipOutput::StaleFrames() const {
+  std::map<std::int64_t, std::string> files;
+  if (!pattern_ || !pattern_->List(files).ok()) return {};
+  files.erase(files.begin(), files.upper_bound(last_number_));
+  if (files.empty()) return {};
+  const std::string first = std::to_string(files.begin()->first);
+  return files.size() == 1 ? first : first + " to " + std::to_string(files.rbegin()->first);
 }
 
 Status ClipOutput::Commit() {

@@ -4,22 +4,24 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <system_error>
 
 #include "files/cache_file.h"
-#include "files/frame_pattern.h"
+#include "files/frame_sequence.h"
 
 namespace sac {
 namespace {
 
+// The files that there are of a sequence.
 std::vector<std::string> Expand(const std::string& path) {
-  std::vector<std::string> files;
-  FramePattern pattern;
-  if (FramePattern::IsPattern(path) && FramePattern::Parse(path, pattern).ok() && pattern.List(files).ok()) {
-    return files;
-  }
-  return {path};
+  FrameSequence sequence;
+  Warnings ignored;
+  if (!FindSequence({path}, Gaps::kSkip, sequence, ignored).ok()) return {path};
+  return std::move(sequence.paths);
 }
 
 bool SameFile(const std::string& a, const std::string& b) {
@@ -60,6 +62,19 @@ Status CheckOverwriting(const std::vector<std::string>& inputs, const std::vecto
     }
   }
   return Status::Ok();
+}
+
+Status CheckUnnamed(const std::string& path, const std::string& bytes) {
+  std::error_code error;
+  if (!std::filesystem::exists(std::filesystem::symlink_status(path, error))) return Status::Ok();
+  std::ifstream file(path, std::ios::binary);
+  if (file && std::filesystem::file_size(path, error) == bytes.size() &&
+      std::equal(bytes.begin(), bytes.end(), std::istreambuf_iterator<char>(file))) {
+    return Status::Ok();
+  }
+  return Status::InvalidArgument(path +
+                                 ": is there already, and another mesh would replace it, although it was not named; "
+                                 "give another name for the output, or --force");
 }
 
 bool IsStandardOutput(const std::string& path) {

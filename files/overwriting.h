@@ -18,6 +18,9 @@ std::vector<std::string> FilesOfOutput(const std::string& path);
 // and pipes may be shared; `-`, once each for input and output, is no file.
 Status CheckOverwriting(const std::vector<std::string>& inputs, const std::vector<std::string>& outputs);
 
+// kInvalidArgument if there is a file at `path`, which the user did not name, that holds anything else than `bytes`.
+Status CheckUnnamed(const std::string& path, const std::string& bytes);
+
 // True if what is written to `path` comes out where standard output does.
 bool IsStandardOutput(const std::string& path);
 

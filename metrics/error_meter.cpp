@@ -7,13 +7,15 @@
 namespace sac {
 
 ErrorMeter::ErrorMeter(std::vector<Triangle> triangles, std::size_t vertices)
-    : spatial_(triangles, vertices), temporal_(vertices) {}
+    : spatial_(triangles, vertices), temporal_(vertices), parts_(triangles, vertices) {}
 
 void ErrorMeter::Add(const Positions& original, const Positions& decoded) {
   assert(original.size() == decoded.size());
   kg_.Add(original, decoded);
   spatial_.Add(original, decoded);
   temporal_.Add(original, decoded);
+  seam_gap_.Add(original, decoded);
+  parts_.Add(original, decoded);
   for (std::size_t v = 0; v < original.size(); ++v) {
     double d2 = 0;
     for (int c = 0; c < 3; ++c) {
@@ -32,6 +34,8 @@ DistortionMetrics ErrorMeter::Result() const {
   m.sted_t = temporal_.Value();
   m.sted = std::hypot(m.sted_s, kStedWeight * m.sted_t);
   m.max_error = std::sqrt(max_error2_);
+  m.seam_gap = seam_gap_.Value();
+  m.worst_part = parts_.Worst();
   m.frames = frames_;
   return m;
 }

@@ -32,7 +32,7 @@ OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t f
   QualitySettings s;
   if (branch.detail) {
     // Only rows of few harmonics, so that detail sets in early enough.
-    s = SettingsOfQuality(place.quality, 0);
+    s = SettingsOfQuality(place.quality, {});
   } else {
     s = SmoothSettingsOfQuality(place.quality, most);
   }
@@ -55,6 +55,15 @@ EncoderSettings SettingsOf(const OperatingPoint& point, double quality, const En
   s.detail_step = point.detail_step;
   s.position_bits = point.position_bits;
   return s;
+}
+
+Typical TypicalOf(double quality) {
+  std::size_t i = 1;
+  while (i + 1 < kTypical.size() && kTypical[i].quality < quality) ++i;
+  const Typical &a = kTypical[i - 1], &b = kTypical[i];
+  const double t = (quality - a.quality) / (b.quality - a.quality);
+  const auto between = [t](double from, double to) { return from * std::pow(to / from, t); };
+  return {quality, between(a.kg, b.kg), between(a.sted, b.sted), between(a.bpvf, b.bpvf)};
 }
 
 double TypicalQuality(double Typical::*figure, double target) {

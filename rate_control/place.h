@@ -35,6 +35,8 @@ EncoderSettings SettingsOf(const OperatingPoint& point, double quality, const En
 struct Typical {
   double quality, kg, sted, bpvf;
 };
+// The figures of a quality from 0 to 100.
+Typical TypicalOf(double quality);
 // The quality at which `figure` typically comes to `target`.
 double TypicalQuality(double Typical::*figure, double target);
 

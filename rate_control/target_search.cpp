@@ -38,7 +38,7 @@ class Search {
          const std::function<Status(Trial&)>& run)
       : targets_(targets),
         base_(base),
-        most_harmonics_(MostHarmonics(vertices)),
+        most_harmonics_(HarmonicLimitsOf(vertices).most()),
         run_(run),
         free_{targets.kg && targets.sted, true, !base.harmonics, targets.kg && targets.sted ? 1.0 : 0.6} {}
 

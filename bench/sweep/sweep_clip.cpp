@@ -9,7 +9,7 @@
 #include "bench/sweep/content_key.h"
 #include "files/cache_file.h"
 #include "files/clip_input.h"
-#include "files/frame_pattern.h"
+#include "files/frame_sequence.h"
 #include "files/mesh_file.h"
 #include "geometry/bounding_box.h"
 
@@ -42,11 +42,11 @@ std::vector<std::vector<std::string>> ClipsOf(const std::vector<std::string>& in
       clips.push_back({inputs[i], inputs[i + 1]});
       open = false;
       ++i;
-    } else if (open && !FramePattern::IsPattern(inputs[i])) {
+    } else if (open && !IsSequenceName(inputs[i])) {
       clips.back().push_back(inputs[i]);
     } else {
       clips.push_back({inputs[i]});
-      open = !FramePattern::IsPattern(inputs[i]);
+      open = !IsSequenceName(inputs[i]);
     }
   }
   return clips;
@@ -54,7 +54,7 @@ std::vector<std::vector<std::string>> ClipsOf(const std::vector<std::string>& in
 
 Status PrepareClip(const std::vector<std::string>& inputs, const std::string& directory, SweepClip& clip) {
   std::unique_ptr<ClipInput> input;
-  SAC_RETURN_IF_ERROR(ClipInput::Open(inputs, input));
+  SAC_RETURN_IF_ERROR(ClipInput::Open(inputs, {}, input));
   const Mesh mesh = GeometryOf(input->mesh());
   clip.name = NameOf(inputs.front());
   clip.frames = *input->frame_count();

@@ -2,8 +2,17 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 
 namespace sac {
+
+// The connected component that is worst against its own size.
+struct PartDistortion {
+  double kg = 0;                   // percent of the component's own spread about its mean in each frame
+  double max_error = 0;            // largest distance between one of its vertices and its decoded position, model units
+  std::uint32_t first_vertex = 0;  // its smallest vertex
+  std::uint32_t vertices = 0;      // how many it has; 0: no component has an extent
+};
 
 // The distortion of a decoded animation against its original.
 struct DistortionMetrics {
@@ -14,6 +23,9 @@ struct DistortionMetrics {
   double sted_s = 0;     // its spatial part
   double sted_t = 0;     // its temporal part; 0 with a single frame
   double max_error = 0;  // largest distance between a vertex and its decoded position, model units
+  // Largest distance between the decoded positions of vertices that coincide in every original frame, model units.
+  double seam_gap = 0;
+  PartDistortion worst_part;
   std::size_t frames = 0;
 };
 

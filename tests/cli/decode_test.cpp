@@ -127,7 +127,7 @@ TEST_F(DecodeTest, Ranges) {
   };
   for (const std::string name : {"part.pc2", "part.mdd"}) {
     const auto part = [&](const std::string& range) {
-      Good({"decode", "clip.sac", "-o", name, "--frames", range});
+      Good({"decode", "clip.sac", "-o", name, "--frames", range, "--force"});
       return LoadCache(name);
     };
     EXPECT_EQ(part("3:9"), slice(3, 9));
@@ -176,7 +176,7 @@ TEST_F(DecodeTest, DamageCanBeSkipped) {
     damaged[end - 1] = static_cast<char>(damaged[end - 1] ^ 1);
     directory_.Write("damaged.sac", damaged);
     const std::size_t first = 5 * group++, last = std::min<std::size_t>(first + 4, 11);
-    const Outcome outcome = Sac({"decode", "damaged.sac", "-o", "out.pc2", "--skip-damage"});
+    const Outcome outcome = Sac({"decode", "damaged.sac", "-o", "out.pc2", "--skip-damage", "--force"});
     EXPECT_EQ(outcome.code, 0);
     EXPECT_NE(
         outcome.err.find("damaged.sac: frames " + std::to_string(first) + " to " + std::to_string(last) + " are lost"),
@@ -185,7 +185,7 @@ TEST_F(DecodeTest, DamageCanBeSkipped) {
     std::vector<Positions> expected = good;
     for (std::size_t f = first; f <= last; ++f) expected[f] = good[first == 0 ? 5 : first - 1];
     EXPECT_EQ(LoadCache("out.pc2"), expected) << first;
-    EXPECT_EQ(Sac({"decode", "damaged.sac", "-o", "out.pc2"}).code, 1);
+    EXPECT_EQ(Sac({"decode", "damaged.sac", "-o", "out.pc2", "--force"}).code, 1);
   }
   EXPECT_EQ(group, 3u);
   const std::string stream = Read("clip.sac");

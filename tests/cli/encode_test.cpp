@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numeric>
 #include <sstream>
@@ -190,6 +191,30 @@ TEST_F(EncodeTest, LowDelay) {
   EXPECT_EQ(cut.code, 0) << cut.err;
   ExpectFailure({"encode", "in.obj", "in.pc2", "-o", "x.sac", "--low-delay", "--pyramid", "4"}, 2,
                 "--pyramid excludes --low-delay (see sac encode --help)");
+}
+
+TEST_F(EncodeTest, EndsBeforeAFrameThatCannotBeCoded) {
+  // Vertex 3 of frame 7 flies away: the third float of a point, behind 32 bytes of header.
+  std::string cache = Read("in.pc2");
+  const std::size_t points = (cache.size() - 32) / 12 / 12;
+  const float far = 1e20f;
+  std::memcpy(&cache[32 + (7 * points + 3) * 12 + 8], &far, sizeof far);
+  directory_.Write("far.pc2", cache);
+  const std::string fault = "far.pc2: frame 7, vertex 3: the motion is too far from the first frame for these steps";
+  ExpectFailure({"encode", "in.obj", "far.pc2", "-o", "none.sac"}, 1, fault);
+  EXPECT_FALSE(std::filesystem::exists(Path("none.sac")));
+  const auto ends = [&](const std::string& output, std::vector<std::string> more) {
+    more.insert(more.begin(), {"encode", "in.obj", "far.pc2", "-o", output});
+    const Outcome outcome = Sac(more);
+    EXPECT_EQ(outcome.code, 1);
+    return outcome.err;
+  };
+  EXPECT_EQ(ends("5.sac", {"--group", "5", "--order-map", "5.map"}),
+            "sac: " + fault + "; 5.sac has the 5 frames before\n");
+  EXPECT_NE(Good({"info", "5.sac"}).find("frames                   5"), std::string::npos);
+  Good({"decode", "5.sac", "-o", "five.pc2", "--order-map", "5.map"});
+  EXPECT_EQ(ends("7.sac", {"--low-delay"}), "sac: " + fault + "; 7.sac has the 7 frames before\n");
+  EXPECT_NE(Good({"info", "7.sac"}).find("frames                   7"), std::string::npos);
 }
 
 TEST_F(EncodeTest, SaysThatTextureCoordinatesAreLost) {

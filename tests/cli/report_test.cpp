@@ -142,9 +142,9 @@ TEST_F(ReportTest, Synth) {
                                        {"sphere", "300"},
                                        {"parts", "300"},
                                        {"vase", "300"}}) {
-    EXPECT_EQ(Good({"synth", kind, "-o", "a.pc2", "--vertices", vertices, "--frames", "3"}), "");
-    Good({"synth", kind, "-o", "b.pc2", "--vertices", vertices, "--frames", "3", "--seed", "1"});
-    Good({"synth", kind, "-o", "c.pc2", "--vertices", vertices, "--frames", "3", "--seed", "2"});
+    EXPECT_EQ(Good({"synth", kind, "-o", "a.pc2", "--force", "--vertices", vertices, "--frames", "3"}), "");
+    Good({"synth", kind, "-o", "b.pc2", "--force", "--vertices", vertices, "--frames", "3", "--seed", "1"});
+    Good({"synth", kind, "-o", "c.pc2", "--force", "--vertices", vertices, "--frames", "3", "--seed", "2"});
     EXPECT_EQ(Read("a.pc2"), Read("b.pc2")) << kind;
     EXPECT_NE(Read("a.pc2"), Read("c.pc2")) << kind;
     EXPECT_EQ(GoodJson({"compare", "a.obj", "a.pc2", "--with", "b.obj", "b.pc2", "--json"})["frames"], 3) << kind;

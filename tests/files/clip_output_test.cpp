@@ -58,7 +58,7 @@ TEST_F(ClipOutputTest, CacheWithItsMesh) {
     EXPECT_FALSE(std::filesystem::exists(path) || std::filesystem::exists(obj));
     ASSERT_TRUE(output_->Commit().ok());
     std::unique_ptr<ClipInput> input;
-    ASSERT_TRUE(ClipInput::Open({obj, path}, input).ok());
+    ASSERT_TRUE(ClipInput::Open({obj, path}, {}, input).ok());
     EXPECT_EQ(input->frame_count(), 2U);
     Mesh mesh;
     ASSERT_TRUE(ReadMesh(obj, mesh).ok());
@@ -89,7 +89,9 @@ TEST_F(ClipOutputTest, SequenceIsNumberedByFrames) {
 TEST_F(ClipOutputTest, NothingStaysWithoutCommit) {
   directory_.Write("a.obj", "before");
   for (const std::string name : {"a.pc2", "a.mdd", "x_%d.ply", "a.obj"}) {
-    ASSERT_TRUE(ClipOutput::Open(directory_.Path(name), mesh_, {}, output_).ok());
+    ClipOutput::Settings settings;
+    settings.force = true;
+    ASSERT_TRUE(ClipOutput::Open(directory_.Path(name), mesh_, settings, output_).ok());
     ASSERT_TRUE(output_->Write(0, Frame(1)).ok());
     EXPECT_GT(directory_.FileCount(), 1U);
     output_.reset();

@@ -281,5 +281,35 @@ TEST(ErrorMeter, PassesOnNaN) {
   }
 }
 
+TEST(ErrorMeter, SeamGapIsOfVerticesThatCoincideInEveryFrame) {
+  const Positions original{{0, 0, 0}, {1, 0, 0}, {0, 0, 0}, {1, 0, 0}, {0, 0, 0}};
+  Positions parts = original, decoded = original;
+  ErrorMeter meter({}, 5);
+  decoded[2] = {0, 3, 4};    // 5 from vertex 0
+  decoded[3] = {1, 0, 100};  // parts from vertex 1 later
+  meter.Add(original, decoded);
+  EXPECT_DOUBLE_EQ(meter.Result().seam_gap, 100);
+  parts[3] = {1, 0, 1};
+  meter.Add(parts, parts);
+  EXPECT_DOUBLE_EQ(meter.Result().seam_gap, 5);
+}
+
+TEST(ErrorMeter, PartsAreMeasuredAgainstTheirOwnSize) {
+  // A triangle of size 1 beside one of size 1000, and a vertex without extent.
+  const Positions original{{0, 0, 0}, {1000, 0, 0}, {0, 1000, 0}, {5, 0, 0}, {6, 0, 0}, {5, 1, 0}, {9, 9, 9}};
+  Positions decoded = original;
+  decoded[1][2] = 10;
+  decoded[4][2] = 0.5;
+  decoded[6][0] = 10;
+  ErrorMeter meter({{0, 1, 2}, {3, 4, 5}}, 7);
+  meter.Add(original, decoded);
+  const PartDistortion worst = meter.Result().worst_part;
+  EXPECT_EQ(worst.first_vertex, 3u);
+  EXPECT_EQ(worst.vertices, 3u);
+  EXPECT_DOUBLE_EQ(worst.max_error, 0.5);
+  // About their mean (16/3, 1/3) the vertices have squared distances of 2/9, 5/9 and 5/9.
+  EXPECT_NEAR(worst.kg, 100 * std::sqrt(0.25 / (12.0 / 9)), 1e-9);
+}
+
 }  // namespace
 }  // namespace sac
