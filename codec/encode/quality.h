@@ -5,7 +5,7 @@
 
 namespace sac {
 
-// What one figure of quality stands for.
+// The settings that one quality stands for.
 struct QualitySettings {
   double quality;
   double motion_step;        // radians and strain
@@ -15,18 +15,21 @@ struct QualitySettings {
   double harmonics;
 };
 
-// From here on there is detail; a little sooner where there are not enough harmonics for what comes before.
+// The quality from which streams have a detail plane. Where the number of harmonics is capped, detail begins a little
+// earlier.
 inline constexpr double kDetailQuality = 75;
 
-// The most harmonics that pay in a mesh: in a small one they approach a code for every vertex, which detail does
-// better; in a large one decoders would take long to start. 200 at least.
+// The largest number of harmonics that is worth using for a mesh of `vertices` vertices, at least 200. In a small mesh,
+// more harmonics approach a code for every vertex, which the detail plane does better. In a large mesh, decoders would
+// take long to start.
 double MostHarmonics(std::uint32_t vertices);
 
-// `quality` from 0 to 100, and beyond with the last rows' ratios: from a table measured on several clips
-// (docs/quality.md), interpolated between those of its rows that have no more than `most_harmonics`, or 200.
+// The settings of `quality`, from a table measured on several clips (docs/quality.md). They are interpolated between
+// the table's rows that have at most max(most_harmonics, 200) harmonics. The table covers 0 to 100; beyond, it is
+// continued with the ratios of its last rows.
 QualitySettings SettingsOfQuality(double quality, double most_harmonics);
 
-// The same without detail: beyond kDetailQuality the other steps become finer.
+// The same without a detail plane: beyond kDetailQuality the other steps become finer instead.
 QualitySettings SmoothSettingsOfQuality(double quality, double most_harmonics);
 
 }  // namespace sac

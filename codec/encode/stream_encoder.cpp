@@ -46,7 +46,7 @@ Status StreamEncoder::Send(std::span<const Vec3f> positions) {
   return IsFull(static_cast<std::uint32_t>(waiting_.size())) ? Latch(EncodeGroup()) : Status::Ok();
 }
 
-// A group is no longer than any decoder takes by default.
+// A group is full when it has the number of frames of the settings or one more would exceed the decoders' limits.
 bool StreamEncoder::IsFull(std::uint32_t frames) const {
   return frames == settings_.group || (std::uint64_t{frames} + 1) * FrameValues(start_.shape.layouts) >
                                           MaxGroupValues(settings_.limits, start_.shape);
@@ -59,7 +59,7 @@ Status StreamEncoder::EncodeFrame(PositionMatrix positions) {
   }
   FrameSyntax frame;
   SAC_RETURN_IF_ERROR(encoder_.EncodeNext(std::move(positions), open_frames_, frame));
-  RangeEncoder range;  // each frame ends with a whole byte; the models go on
+  RangeEncoder range;  // a coder of its own, since each frame is a record; the models in coder_ continue
   FrameBits bits;
   if (!coder_->Code(range, ChainSlot(open_frames_), frame, &bits)) {
     return Status::InvalidArgument("the motion is too far from the first frame for these steps");
