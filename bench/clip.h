@@ -11,13 +11,14 @@ namespace sac::bench {
 
 inline constexpr std::uint32_t kFrames = 256;  // two groups of the default settings
 
-// A clip and its stream at the default settings.
+// A clip and its stream, which is encoded with the default settings.
 struct CodedClip {
   Clip clip;
   std::vector<std::uint8_t> stream;
 };
 
-// A synthetic walker, made once for each number of vertices. Ends the program when that fails.
+// A synthetic walker of about `vertices` vertices. It is made and encoded by the first call for each number of
+// vertices. Ends the program when that fails.
 const CodedClip& WalkerClip(std::uint32_t vertices);
 
 }  // namespace sac::bench

@@ -9,7 +9,7 @@
 namespace sac::bench {
 namespace {
 
-// A line of /proc/self/status, which counts in kB.
+// The value of the line `name` of /proc/self/status in megabytes. The file counts in kB.
 double StatusMegabytes(const std::string& name) {
   std::ifstream file("/proc/self/status");
   for (std::string line; std::getline(file, line);) {

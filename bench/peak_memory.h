@@ -3,11 +3,12 @@
 
 namespace sac::bench {
 
-// What the process came to hold since Start() beyond what it held then, by the kernel's count of resident pages. Linux
-// keeps one high-water mark (getrusage's ru_maxrss), which Start() resets.
+// Measures how much the resident memory of the process has grown at its peak since Start(). It reads the kernel's
+// high-water mark, of which a Linux process has only one; Start() resets it.
 class PeakMemory {
  public:
   void Start();
+  // The growth in megabytes.
   double Megabytes() const;
 
  private:

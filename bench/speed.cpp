@@ -35,7 +35,7 @@ void CountVertices(benchmark::State& state, const CodedClip& coded) {
   state.counters["vertices"] = static_cast<double>(coded.clip.mesh.positions.size());
 }
 
-// The header and the I-frame of a clip, to start step by step as the decoder does.
+// The header and the I-frame of a clip, from which the steps of a decoder's start are measured one by one.
 struct StreamStart {
   SequenceHeader header;
   IFrameSyntax syntax;
@@ -65,7 +65,7 @@ struct StreamStart {
   }
 };
 
-// A player's wait: from the first byte to the first frame, with the integers of its group.
+// The time from the first byte to the first frame, which includes parsing the first group.
 void StartDecoder(benchmark::State& state) {
   const CodedClip& coded = WalkerClip(Vertices(state));
   DecodedFrame frame;
@@ -79,7 +79,7 @@ void StartDecoder(benchmark::State& state) {
   CountVertices(state, coded);
 }
 
-// The wait's parts.
+// The steps of that time: mesh, harmonics, factorization.
 void StartMesh(benchmark::State& state) {
   const CodedClip& coded = WalkerClip(Vertices(state));
   StreamStart start(coded);
@@ -105,7 +105,7 @@ void StartFactorization(benchmark::State& state) {
   CountVertices(state, coded);
 }
 
-// All frames, once the mesh is there.
+// Decoding all frames, without the time until the mesh is there.
 void DecodeFrames(benchmark::State& state) {
   const CodedClip& coded = WalkerClip(Vertices(state));
   DecodedFrame frame;
@@ -132,8 +132,8 @@ void DecodeFrames(benchmark::State& state) {
   CountVertices(state, coded);
 }
 
-// Any frame of the clip, from the request to its positions: its group is read, and the one frame reconstructed. The
-// last frame of a group takes longest, since models adapt through all before it.
+// Seeking to frames all over the clip, from the request to the positions: the frame's group is parsed and one frame is
+// reconstructed. Groups are parsed as a whole, since the models adapt from frame to frame.
 void SeekAnywhere(benchmark::State& state) {
   const CodedClip& coded = WalkerClip(Vertices(state));
   Decoder decoder;
@@ -142,7 +142,7 @@ void SeekAnywhere(benchmark::State& state) {
   while (decoder.mesh() == nullptr) Require(decoder.Send(bytes));
   std::uint32_t wanted = 0;
   for ([[maybe_unused]] auto step : state) {
-    wanted = (wanted + 131) % kFrames;  // of groups of 128, another one each time
+    wanted = (wanted + 131) % kFrames;  // groups have 128 frames, so each seek goes to another group
     std::uint64_t byte = 0;
     Require(decoder.Seek(wanted, byte));
     bytes = std::span(coded.stream).subspan(byte);
@@ -151,7 +151,7 @@ void SeekAnywhere(benchmark::State& state) {
   CountVertices(state, coded);
 }
 
-// Likewise within the group that was read last, as when a user scrubs.
+// Seeking within the group that was parsed last, as when a user scrubs.
 void SeekInGroup(benchmark::State& state) {
   const CodedClip& coded = WalkerClip(Vertices(state));
   Decoder decoder;
@@ -178,7 +178,7 @@ void StartEncoder(benchmark::State& state) {
   CountVertices(state, coded);
 }
 
-// All frames, the encoder's start left out.
+// Encoding all frames, without the time to encode the start of the stream.
 void EncodeFrames(benchmark::State& state) {
   const CodedClip& coded = WalkerClip(Vertices(state));
   PeakMemory memory;

@@ -6,7 +6,8 @@
 
 namespace sac {
 
-// The code of a status in the interface of C, which has no files.
+// The code of `status` in the C interface. That interface reads and writes no files, so kIoError has no code of its
+// own.
 inline sac_status CodeOf(const Status& status) {
   switch (status.code()) {
     case StatusCode::kOk:

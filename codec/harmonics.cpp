@@ -19,14 +19,14 @@ namespace sac {
 namespace {
 
 constexpr double kInhomogeneity = 0.1;
-constexpr Eigen::Index kDenseSize = 96;    // up to here all eigenpairs at once are as quick as the wanted ones
-constexpr int kSpareVectors = 20;          // of Lanczos, beside two for each wanted one
-constexpr double kFunctionsMemory = 1000;  // a vertex, of the radial functions that reach it on a surface
-constexpr double kFunctionMemory = 90;     // of each of them
-// Surfaces take 1 or 2 restarts; what is next to a long path, whose eigenvalues are all but equal, takes hundreds.
+constexpr Eigen::Index kDenseSize = 96;    // up to this size, a dense solver for all eigenpairs is as quick as Lanczos
+constexpr int kSpareVectors = 20;          // Lanczos vectors beside two for each wanted eigenpair
+constexpr double kFunctionsMemory = 1000;  // bytes per vertex for the radial functions that reach it on a surface
+constexpr double kFunctionMemory = 90;     // bytes for each value of a radial function
+// Surfaces take 1 or 2 restarts. Shapes that are nearly a long path have almost equal eigenvalues and take hundreds.
 constexpr int kUsualRestarts = 5, kMaxRestarts = 60;
 
-// A fixed generic cubic of the coordinates scaled to [0, 1], within [-1, 1] (spec.md 6.4.2).
+// A fixed generic cubic polynomial of coordinates scaled to [0, 1], with values in [-1, 1] (spec.md 6.4.2).
 double GenericCubic(const Eigen::Array3d& p) {
   const double x = p[0], y = p[1], z = p[2];
   return 0.31 * x - 0.23 * y + 0.17 * z + 0.19 * x * y - 0.29 * y * z + 0.13 * z * x + 0.11 * x * x * y -
@@ -49,7 +49,8 @@ bool Factorize(Eigen::LLT<Eigen::MatrixXd>& solver, const Eigen::MatrixXd& matri
   return solver.info() == Eigen::Success;
 }
 
-// (A - sigma I)^-1 by a Cholesky solver of A's kind, as Spectra's operation.
+// The operation x -> (A - sigma I)^-1 x in the form that Spectra asks for. `Solver` is a Cholesky solver for matrices
+// of the type of A.
 template <class Matrix, class Solver>
 class ShiftSolve {
  public:
@@ -76,7 +77,8 @@ class ShiftSolve {
 using SparseShiftSolve = ShiftSolve<Eigen::SparseMatrix<double>, SparseCholesky>;
 using DenseShiftSolve = ShiftSolve<Eigen::MatrixXd, Eigen::LLT<Eigen::MatrixXd>>;
 
-// The `count` smallest eigenpairs of a symmetric, positive semidefinite matrix given by its lower triangle.
+// Computes the `count` smallest eigenpairs of a symmetric, positive semidefinite matrix given by its lower triangle.
+// Returns false when they do not converge.
 template <class Operation, class Matrix>
 bool SmallestEigenpairs(const Matrix& lower, std::uint32_t count, EigenPairs& out) {
   const Eigen::Index n = lower.rows(), wanted = count, basis = std::min<Eigen::Index>(2 * wanted + kSpareVectors, n);
@@ -86,7 +88,8 @@ bool SmallestEigenpairs(const Matrix& lower, std::uint32_t count, EigenPairs& ou
     out = {solver.eigenvalues().head(wanted), solver.eigenvectors().leftCols(wanted)};
     return true;
   }
-  // Masses sum to 1 over the mesh, so a shift of -1 is below a surface's spacing of eigenvalues, about 4 pi (Weyl).
+  // Masses sum to 1 over the mesh, so the eigenvalues of a surface are about 4 pi apart (Weyl's law), and a shift of -1
+  // is small beside that.
   Operation operation(lower);
   Spectra::SymEigsShiftSolver<Operation> solver(operation, wanted, basis, -1.0);
   if (!operation.ok()) return false;
@@ -95,7 +98,7 @@ bool SmallestEigenpairs(const Matrix& lower, std::uint32_t count, EigenPairs& ou
   solver.init(start.data());
   try {
     solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, 1e-13, Spectra::SortRule::SmallestAlge);
-  } catch (const std::runtime_error&) {  // of its small eigenproblems
+  } catch (const std::runtime_error&) {  // Spectra throws it when one of its small eigenproblems does not converge
     return false;
   }
   if (solver.info() != Spectra::CompInfo::Successful) return false;
@@ -103,7 +106,7 @@ bool SmallestEigenpairs(const Matrix& lower, std::uint32_t count, EigenPairs& ou
   return true;
 }
 
-// Of L h = lambda D h itself: with h = D^-1/2 y, the eigenpairs of D^-1/2 L D^-1/2.
+// Computes the smallest eigenpairs of L h = lambda D h. With h = D^-1/2 y they are those of D^-1/2 L D^-1/2.
 bool ExactHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, std::uint32_t count,
                     EigenPairs& out) {
   const Eigen::VectorXd scale = mass.cwiseSqrt().cwiseInverse();
@@ -114,8 +117,8 @@ bool ExactHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::V
   return true;
 }
 
-// One step of inverse iteration, Y = (L + D)^-1 D H, and the Ritz vectors of its span: what radial functions mix of
-// parts near in space but far along the surface comes apart.
+// Takes one step of inverse iteration, Y = (L + D)^-1 D H, and computes the Ritz vectors of the span of Y. The step
+// separates parts of the surface that are near in space but far along the surface, which radial functions mix.
 bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, RowMatrix functions,
             EigenPairs& out) {
   Eigen::SparseMatrix<double> shifted;
@@ -123,7 +126,7 @@ bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd&
   for (Eigen::Index i = 0; i < shifted.rows(); ++i) shifted.coeffRef(i, i) += mass[i];
   SparseCholesky solver;
   if (!Factorize(solver, shifted)) return false;
-  RowMatrix& weighted = functions;  // one of the largest things there are
+  RowMatrix& weighted = functions;  // reuses the memory, since this is one of the largest matrices
   weighted.array().colwise() *= mass.array();
   RowMatrix image = weighted;
   solver.SolveInPlace(image);
@@ -140,7 +143,8 @@ bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd&
   return true;
 }
 
-// Of the same problem within the span of `functions` (Rayleigh-Ritz): S^T L S y = lambda S^T D S y, h = S y.
+// Solves the same problem within the span of the columns of S = `functions` (Rayleigh-Ritz): S^T L S y = lambda S^T D S
+// y, h = S y.
 bool ReducedHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass,
                       const Eigen::SparseMatrix<double>& functions, std::uint32_t count, EigenPairs& out) {
   // Assigned, not constructed: Eigen's constructors lose memory when there is too little.
@@ -161,7 +165,7 @@ bool ReducedHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen:
   return Refine(laplacian, mass, rows * mixed, out);
 }
 
-// The Laplacian of a component; spec.md 6.4.2: weights are stretched unevenly, which splits the multiple eigenvalues of
+// The Laplacian of a component with unevenly scaled weights (spec.md 6.4.2), which splits the multiple eigenvalues of
 // symmetric shapes.
 Eigen::SparseMatrix<double> UnevenLaplacian(const LaplaceProblem& problem, const Component& c) {
   Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::max()), high = -low;
@@ -181,7 +185,8 @@ Eigen::SparseMatrix<double> UnevenLaplacian(const LaplaceProblem& problem, const
   return LaplacianMatrix(ends, uneven, c.first, c.count);
 }
 
-// Scales each harmonic to a mean square of 1 and gives it the sign of spec.md 6.4.3; the constant one is known exactly.
+// Scales each harmonic to a mean square of 1 and gives it the sign of spec.md 6.4.3. The first harmonic is set to 1,
+// its exact value.
 void Normalize(const Eigen::VectorXd& mass, ComponentHarmonics& harmonics) {
   harmonics.eigenvalues[0] = 0;
   harmonics.vectors.col(0).setOnes();
@@ -203,7 +208,7 @@ Status ComputeComponent(const LaplaceProblem& problem, std::uint32_t count, cons
   const std::uint64_t samples = static_cast<std::uint64_t>(problem.samples_per_harmonic) * count;
   Eigen::SparseMatrix<double> functions;
   if (count > 1 && samples > 0 && samples < c.count) {
-    // A vertex that k functions reach is in k^2 of their products.
+    // A vertex that k functions reach contributes to k^2 products of functions, so the work bounds the square.
     const double max_values =
         std::min((kFunctionsMemory * c.count + spare.memory) / kFunctionMemory,
                  std::sqrt((HarmonicsWork(c.count, count, static_cast<double>(samples)) + spare.work) * c.count));
@@ -225,7 +230,7 @@ Status ComputeComponent(const LaplaceProblem& problem, std::uint32_t count, cons
   return Status::Ok();
 }
 
-// The part of the generic bilinear form that these vectors have in it; constant functions have none.
+// The share of `basis` in the generic bilinear form (spec.md 6.6). Constant functions, k = 0, do not enter it.
 double GenericForm(const HarmonicBasis& basis) {
   double form = 0;
   for (const ComponentHarmonics& c : basis.components) {
@@ -263,8 +268,8 @@ struct Eigenproblem {
         dense(size <= kDenseSize || basis == size) {}
   bool reduced;
   double size;
-  double basis;  // vectors of Lanczos
-  bool dense;    // all eigenpairs at once
+  double basis;  // number of Lanczos vectors
+  bool dense;    // whether a dense solver computes all eigenpairs at once
 };
 
 }  // namespace

@@ -16,53 +16,54 @@
 
 namespace sac {
 
-// The manifold harmonics of one component, or of a patch: eigenfunctions of its Laplace-Beltrami operator (Vallet and
-// Levy 2008).
+// The manifold harmonics of one component or one patch: the eigenfunctions of its Laplace-Beltrami operator with the
+// smallest eigenvalues (Vallet and Levy 2008).
 struct ComponentHarmonics {
   Component component;
-  Eigen::MatrixXd vectors;      // count x harmonics, unit mean square
+  Eigen::MatrixXd vectors;      // vertices x harmonics, each column with a mass-weighted mean square of 1
   Eigen::VectorXd eigenvalues;  // ascending
 };
 
 struct HarmonicBasis {
   std::vector<ComponentHarmonics> components;
-  std::vector<HarmonicIndex> order;  // of a plane's rows
+  std::vector<HarmonicIndex> order;  // the harmonic of each row of a plane
 };
 
-// Two numbers that differ when the harmonics of components or patches do: the sum of the components' eigenvalues, and a
-// fixed generic bilinear form of all vectors (spec.md 6.6).
+// Two numbers by which a decoder finds that its harmonics are not the encoder's: the sum of the components'
+// eigenvalues, and a fixed generic bilinear form of all vectors of components and patches (spec.md 6.6).
 std::array<float, 2> Fingerprint(const HarmonicBasis& components, const HarmonicBasis& patches);
 
-// Whether two fingerprints are of the same harmonics, as computed by different machines.
+// Whether two fingerprints belong to the same harmonics, allowing for the rounding errors of different machines.
 bool SameFingerprint(const std::array<float, 2>& a, const std::array<float, 2>& b);
 
-// Multiplications that the harmonics of a component of so many vertices take, about. `samples`: of the reduced basis.
+// The estimated number of multiplications to compute `harmonics` harmonics of a component of `vertices` vertices.
+// `samples` is the number of samples of the reduced basis, 0 for the exact one.
 double HarmonicsWork(double vertices, double harmonics, double samples);
 
-// Bytes that they take, and their computation with them, at most, about.
+// The estimated peak number of bytes of the same computation, its result included.
 double HarmonicsMemory(double vertices, double harmonics, double samples);
 
-// What is left for what HarmonicsWork() and HarmonicsMemory() do not count: radial functions of vertices that fill a
-// volume, which more of them reach than on a surface.
+// Work and memory that a component may take beyond the estimates of HarmonicsWork() and HarmonicsMemory(). The
+// estimates count the radial functions of a surface; where vertices fill a volume, more functions reach each vertex.
 struct Spare {
-  double work = std::numeric_limits<double>::infinity();
-  double memory = std::numeric_limits<double>::infinity();
+  double work = std::numeric_limits<double>::infinity();    // multiplications
+  double memory = std::numeric_limits<double>::infinity();  // bytes
 };
 
-// The eigenvalue problem of the Laplace-Beltrami operator of a mesh, which is solved for each of its components, or for
-// each patch, apart. What it refers to must outlive it.
+// The eigenvalue problem of the Laplace-Beltrami operator of a mesh. It is solved separately for each component, or for
+// each patch. Everything that it refers to must outlive it.
 struct LaplaceProblem {
   const EdgeList& edges;
-  std::span<const double> weights;         // cotangent weight per edge, of the decoded first frame
-  const Eigen::VectorXd& masses;           // area share per vertex, of the decoded first frame
-  std::span<const GridPosition> grid;      // per vertex
-  std::span<const Component> components;   // or patches
-  std::span<const std::uint32_t> counts;   // harmonics wanted per component, 1 to its number of vertices
-  std::uint32_t samples_per_harmonic = 0;  // of the reduced basis; 0: the exact one
+  std::span<const double> weights;         // cotangent weight of each edge in the decoded first frame
+  const Eigen::VectorXd& masses;           // mass of each vertex: its share of the area, or 1 for patches
+  std::span<const GridPosition> grid;      // position of each vertex
+  std::span<const Component> components;   // components or patches
+  std::span<const std::uint32_t> counts;   // harmonics wanted of each component, 1 to its number of vertices
+  std::uint32_t samples_per_harmonic = 0;  // samples of the reduced basis for each harmonic; 0: the exact basis
 };
 
-// Computes the basis as spec.md 6.4 defines it. kCorrupt when an eigenvalue problem does not converge, kLimit when it
-// takes more than `spare` has.
+// Computes the basis as spec.md 6.4 defines it. Returns kCorrupt when an eigenvalue problem does not converge and
+// kLimit when it takes more than its estimate and `spare` together.
 Status ComputeHarmonics(const LaplaceProblem& problem, const Spare& spare, HarmonicBasis& basis);
 
 }  // namespace sac

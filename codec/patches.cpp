@@ -39,7 +39,8 @@ class Cutter {
   PatchOrder order;
 
  private:
-  // Each connected piece of `part` is a patch; pieces by their smallest vertex, vertices in ascending order.
+  // Adds each connected piece of `part` as a patch. Pieces are ordered by their smallest vertex, and the vertices of a
+  // piece ascend.
   void AddPieces(std::span<std::uint32_t> part) {
     std::sort(part.begin(), part.end());
     std::vector<bool> done(part.size(), false);

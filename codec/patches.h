@@ -10,14 +10,15 @@
 
 namespace sac {
 
-// Vertices of a component in an order in which each patch is a run, and the patches' sizes.
+// The vertices of a component in an order in which each patch is a run of consecutive vertices.
 struct PatchOrder {
   std::vector<std::uint32_t> vertices;
-  std::vector<std::uint32_t> sizes;
+  std::vector<std::uint32_t> sizes;  // vertices of each patch, in that order
 };
 
-// Cuts one component into connected patches of at most `size` vertices (spec.md 5.4): halves by position along the
-// longest axis, integers alone, then the connected pieces of what is left.
+// Cuts one component into connected patches of at most `size` vertices (spec.md 5.4). The component is halved by
+// position along its longest axis, and its halves again, until they are small enough; each connected piece of a half is
+// a patch. All computation is in integers.
 PatchOrder CutIntoPatches(std::span<const GridPosition> grid, const VertexGraph& graph,
                           std::vector<std::uint32_t> component, std::uint32_t size);
 

@@ -7,7 +7,7 @@
 namespace sac {
 namespace {
 
-// Lengths in 1/16 of a step, in half octaves.
+// The context class of `length`, 1/16 of a cell: half octaves of its ratio to `step`, which is in cells.
 std::size_t Class(std::int64_t length, std::int64_t step) {
   return std::min<std::size_t>(HalfOctave(static_cast<std::uint32_t>(std::min<std::int64_t>(length / step, 1 << 20))),
                                23);
@@ -40,7 +40,9 @@ bool PositionCoder<Coder>::Code(Coder& coder, const PositionPredictor& predictor
                                 GridPosition& position) {
   const PositionPredictor::Prediction& p = predictor.now();
   PositionPredictor::Vector offset = {};
-  std::int64_t before = p.activity;  // how far off the axes before were
+  // The mean prediction error on the axes coded before, 1/16 of a cell. For the first axis the neighbours' error stands
+  // in for it.
+  std::int64_t before = p.activity;
   const std::size_t shape = std::min(p.parallelograms, kShapes - 1);
   for (std::size_t j = 0; j < 3; ++j) {
     const std::size_t axis = p.axes[j];
@@ -61,7 +63,7 @@ bool PositionCoder<Coder>::Code(Coder& coder, const PositionPredictor& predictor
       std::uint32_t magnitude = CodeUnary<Coder>(
           wanted, kUnary, [&](std::size_t bin, bool& more) { CodeBin(coder, contexts, j, bin, more); });
       if (magnitude > kUnary) {
-        std::uint32_t rest = wanted - magnitude;  // of no meaning to a decoder, which reads it
+        std::uint32_t rest = wanted - magnitude;  // a decoder overwrites this value by what it reads
         CodeUnsigned(coder, rest_, rest);
         if (rest >> bits != 0) return false;
         magnitude += rest;

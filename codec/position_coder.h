@@ -15,24 +15,25 @@
 
 namespace sac {
 
-// Residuals of a vertex along its axes, in coding order, in its steps.
+// The residuals of a vertex along its three axes, in the order in which they are coded, in units of the vertex's step.
 using PositionResidual = std::array<std::int32_t, 3>;
 
-// Writes or reads positions, a vertex at a time (spec.md 5.5.6). Encoder and decoder instantiate the same body.
+// Writes or reads positions, one vertex at a time (spec.md 5.5.6). Encoder and decoder instantiate the same body.
 template <class Coder>
 class PositionCoder {
  public:
   PositionCoder();
 
-  // Of the vertex that `predictor` has predicted. False when the position is off a grid of `bits` bits.
+  // Codes the vertex that `predictor` predicted last: writes `residual`, or reads it. `position` gets the vertex's
+  // position in grid cells. Returns false when the position is off the grid of `bits` bits per axis.
   bool Code(Coder& coder, const PositionPredictor& predictor, int bits, PositionResidual& residual,
             GridPosition& position);
 
  private:
   static constexpr std::size_t kUnary = 14;  // bins of a magnitude that have contexts
-  static constexpr std::size_t kKinds = 6;   // of bins that have mixers of their own: zero or not, then unary bins
+  static constexpr std::size_t kKinds = 6;   // kinds of bins with own mixers: the zero bin, then by unary index
   static constexpr std::size_t kClasses = 24;
-  static constexpr std::size_t kShapes = 5;  // by the number of parallelograms
+  static constexpr std::size_t kShapes = 5;  // classes of the number of parallelograms
   static constexpr std::size_t kStates = 4;
   static constexpr std::size_t kInputs = kStates + 1;
 
@@ -51,8 +52,8 @@ class PositionCoder {
 extern template class PositionCoder<RangeEncoder>;
 extern template class PositionCoder<RangeDecoder>;
 
-// Decodes the positions of all vertices of `graph`. kCorrupt when one is off the grid or the code does not end where
-// the bytes do.
+// Decodes the positions, in grid cells, of all vertices of `graph`. Returns kCorrupt when a position is off the grid of
+// `bits` bits per axis or the code does not end where `bytes` does.
 Status DecodePositions(std::span<const std::uint8_t> bytes, const PositionGraph& graph, const PositionSteps& steps,
                        int bits, std::vector<GridPosition>& positions);
 

@@ -48,7 +48,8 @@ PositionGraph::PositionGraph(std::uint32_t vertices, std::span<const Triangle> t
   }
   for (std::size_t v = 0; v < vertices; ++v) first_[v + 1] += first_[v];
 
-  // An edge and what is across it; sorted, each edge's are together and in the order of neighbors_.
+  // Each entry is an edge and the vertex opposite it. Sorted, the entries of an edge stand together, and edges follow
+  // in the order of neighbors_.
   std::vector<Triangle> across;
   for (const Triangle& t : sets) {
     if (!kept(t[0]) || !kept(t[1]) || !kept(t[2])) continue;
@@ -80,7 +81,8 @@ std::span<const std::uint32_t> PositionGraph::Across(std::uint32_t a, std::uint3
 std::vector<std::uint32_t> PositionGraph::CodingOrder() const {
   std::vector<std::uint32_t> order, count(vertices(), 0);
   std::vector<bool> taken(vertices(), false);
-  // Queues by the number of neighbours taken, and how far each is read. What has moved on to another is skipped.
+  // queues[k] holds the vertices that have had k neighbours taken, and read[k] is how far it has been read. A vertex
+  // that has moved on to a later queue is skipped.
   std::array<std::vector<std::uint32_t>, kMaxCounted + 1> queues;
   std::array<std::size_t, kMaxCounted + 1> read = {};
   std::uint32_t lowest = 0;

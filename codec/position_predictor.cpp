@@ -14,8 +14,8 @@ constexpr std::size_t kMaxParallelograms = 16;
 constexpr int kSweeps = 8;
 constexpr std::int64_t kMembrane = 39322;                 // 0.3 * 2 in 1/65536
 constexpr std::int64_t kFlat = 307;                       // 0.3 in 1/1024
-constexpr std::int64_t kOutside = std::int64_t{1} << 30;  // bounds guesses
-constexpr std::int64_t kFar = std::int64_t{1} << 20;      // bounds what is learnt from
+constexpr std::int64_t kOutside = std::int64_t{1} << 30;  // largest magnitude of a guess
+constexpr std::int64_t kFar = std::int64_t{1} << 20;      // largest magnitude of an error or feature to learn from
 
 std::int64_t FloorDivide(std::int64_t a, std::int64_t b) {  // b > 0
   const std::int64_t q = a / b;
@@ -39,7 +39,7 @@ Vector Quotient(const Vector& a, std::int64_t b) {
 }
 std::int64_t Bounded(std::int64_t x) { return std::clamp(x, -kFar, kFar); }
 
-// The cross product of two vectors of cells with components halved, all at once, until they are below 2^15.
+// The cross product of two vectors in cells, halved as a whole until all its components are below 2^15.
 Vector ReducedCross(const Vector& a, const Vector& b) {
   Vector n = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
   while (std::max({std::abs(n[0]), std::abs(n[1]), std::abs(n[2])}) >= 1 << 15) n = {n[0] / 2, n[1] / 2, n[2] / 2};
@@ -60,7 +60,8 @@ PositionPredictor::PositionPredictor(const PositionGraph& graph, const PositionS
   weights_.fill({1 << 15, 0, 0});
 }
 
-// spec.md 5.5.3: across each edge whose triangle has the vertex lies another, known one.
+// Averages the parallelograms of the vertex (spec.md 5.5.3). Each needs an edge opposite the vertex in a triangle, and
+// a known vertex on the other side of that edge.
 void PositionPredictor::AddParallelograms() {
   std::array<Vector, kMaxParallelograms> corners;
   std::size_t count = 0;
@@ -93,7 +94,8 @@ void PositionPredictor::AddParallelograms() {
   }
 }
 
-// spec.md 5.5.3: means over the known neighbours, and over theirs; how well these were predicted, how long their edges.
+// Computes the means of positions, prediction errors and edge lengths over the known neighbours and over the known
+// neighbours of these (spec.md 5.5.3).
 void PositionPredictor::AverageNeighbors() {
   Vector sum = {}, wide_sum = {};
   std::int64_t wide = 0, lengths = 0, misses = 0, wide_misses = 0;
@@ -117,7 +119,7 @@ void PositionPredictor::AverageNeighbors() {
   if (wide > 0) length_ = lengths / wide;
 }
 
-// The vertex and the unknown ones up to two edges away, in the order they are found, at most kMaxGuesses.
+// Lists the vertex and the unknown vertices up to two edges away in breadth-first order, at most kMaxGuesses.
 void PositionPredictor::GatherUnknown() {
   unknown_.clear();
   const auto add = [&](std::uint32_t v) {
@@ -135,8 +137,7 @@ void PositionPredictor::GatherUnknown() {
   }
 }
 
-// One unknown vertex where it makes the sum of squares of spec.md 5.5.4 least: (constant + sum of factors * guesses) /
-// denominator.
+// The position of the unknown vertex `u` that minimizes the sum of squares of spec.md 5.5.4 while the others stay.
 PositionPredictor::Equation PositionPredictor::EquationOf(std::uint32_t u) const {
   Equation e;
   const auto add = [&](std::uint32_t v, std::int64_t factor) {
@@ -148,12 +149,13 @@ PositionPredictor::Equation PositionPredictor::EquationOf(std::uint32_t u) const
       e.factors[slot_[v].index] += factor;
     }
   };
-  const auto bending = [&](std::uint32_t c) {  // c is in the middle of its neighbours
+  // Adds the term that pulls `c` to the mean of its neighbours.
+  const auto bending = [&](std::uint32_t c) {
     const auto around = graph_.Neighbors(c);
     if (!std::all_of(around.begin(), around.end(), [&](std::uint32_t w) { return Given(w); })) return;
     const auto d = static_cast<std::int64_t>(around.size());
     const std::int64_t weight = 65536 / (d * d), own = c == u ? d : -1;
-    // The square of d c - sum(around) has, by u, the slope own * (d c - sum(around)).
+    // The derivative of |d c - sum(around)|^2 / 2 with respect to u is own * (d c - sum(around)).
     add(c, c == u ? weight * d * d : weight * d);
     for (const std::uint32_t w : around) add(w, w == u ? weight : weight * own);
   };
@@ -168,7 +170,8 @@ PositionPredictor::Equation PositionPredictor::EquationOf(std::uint32_t u) const
   return e;
 }
 
-// spec.md 5.5.4: the vertex, and unknown ones around it, where they bend the surface least.
+// The position of the vertex that, together with the unknown vertices around it, bends the surface least
+// (spec.md 5.5.4).
 PositionPredictor::Vector PositionPredictor::Relax() {
   GatherUnknown();
   std::array<Equation, kMaxGuesses> equations;
@@ -226,7 +229,8 @@ void PositionPredictor::Predict(std::uint32_t vertex) {
   now_.step = std::clamp<std::int64_t>(sixteenths >> 4, 1, last_cell_ / 2 + 1);
 }
 
-// Where the surface, through `centre` across the normal, is on the last axis. Zero where it is too steep to tell.
+// The offset on the last axis at which the plane through `centre` with the predicted normal meets the offsets of the
+// first two axes. Zero where that plane is too steep.
 std::int64_t PositionPredictor::Along(const Vector& offset) const {
   const std::int64_t n = normal_[now_.axes[2]];
   if (std::abs(n) <= kFlat) return 0;

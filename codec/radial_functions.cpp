@@ -20,7 +20,7 @@ std::uint64_t SquaredDistance(const GridPosition& a, const GridPosition& b) {
   return sum;
 }
 
-// Wendland's C2 function of the distance over the radius, below 1.
+// Wendland's C2 function (Wendland 1995) of t = distance / radius, 0 <= t < 1.
 double Wendland(double t) {
   const double s = (1 - t) * (1 - t);
   return s * s * (4 * t + 1);
@@ -31,7 +31,7 @@ double Wendland(double t) {
 bool RadialFunctions(std::span<const GridPosition> grid, std::uint32_t samples, double max_values,
                      Eigen::SparseMatrix<double>& functions) {
   functions.resize(0, 0);
-  // Farthest-point sampling from the first vertex on; of equally far vertices the first.
+  // Farthest-point sampling begins with the first vertex. Of equally far vertices it takes the first.
   std::vector<std::uint64_t> distance(grid.size(), std::numeric_limits<std::uint64_t>::max());
   std::vector<std::size_t> chosen = {0};
   std::uint64_t covering = 0;

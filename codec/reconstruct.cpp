@@ -10,7 +10,8 @@
 namespace sac {
 namespace {
 
-// A sum that shrinks below this share of the largest one since it began anew holds mostly rounding errors.
+// When the magnitudes fall below this share of the largest ones since the last reset, the running sum holds mostly
+// rounding errors and is computed anew.
 constexpr double kRoundingShare = 1.0 / (1 << 16);
 
 constexpr std::array kHarmonicPlanes = {kMotion, kDisplacement, kDetail};
@@ -107,7 +108,7 @@ bool Reconstructor::UseKeyReference() {
 const PositionMatrix& Reconstructor::ReconstructMotion(const PlaneValues& motion) {
   const Eigen::MatrixXd& fields = fields_[kMotion].Update(motion);
   if (std::all_of(motion.begin(), motion.end(), [](std::int32_t c) { return c == 0; })) {
-    aligned_ = reference();  // exactly, so that what stands still does
+    aligned_ = reference();  // exact, so that a shape without motion does not drift
     return aligned_;
   }
   for (Eigen::Index v = 0; v < fields.rows(); ++v) {
@@ -153,7 +154,7 @@ void Reconstructor::Transform(const PositionMatrix& aligned, const RigidTransfor
   const auto x = aligned.col(0).array() - shape_.centre[0];
   const auto y = aligned.col(1).array() - shape_.centre[1];
   const auto z = aligned.col(2).array() - shape_.centre[2];
-  // Written out, since a product of matrices allocates.
+  // The product is written out, because Eigen's product of matrices allocates.
   for (Eigen::Index a = 0; a < 3; ++a) {
     const auto row = transform.rotation.row(a);
     moved.col(a).array() = (x * row[0] + y * row[1] + z * row[2]) + transform.translation[a];

@@ -15,25 +15,25 @@
 
 namespace sac {
 
-// Rounds `matrix` to floats: the only place where positions are rounded.
+// Rounds `matrix` to floats. Positions are rounded nowhere else.
 void ToPositions(const PositionMatrix& matrix, Positions& positions);
 
-// A rotation about the centre of the first frame, after which the centre is at `translation`, model units.
+// A rotation about the centre of the first frame that then moves the centre to `translation` (model units).
 struct RigidTransform {
   Eigen::Matrix3d rotation;
   Eigen::RowVector3d translation;
 };
 
-// The values of one plane at the vertices, harmonics times coefficients (spec.md 6.5.1). Only harmonics whose
-// coefficients changed are touched.
+// The values of one plane at the vertices: harmonics times coefficients (spec.md 6.5.1). An update adds only the
+// harmonics whose coefficients changed.
 class PlaneField {
  public:
-  // `basis` must outlive it. `units`: of each row's coefficients.
+  // `basis` must outlive the object. `units` has the unit of the coefficients in each row.
   PlaneField(const HarmonicBasis& basis, const PlaneLayout& layout, Eigen::VectorXd units);
 
-  // vertices x channels.
+  // The values for `coefficients`, vertices x channels, valid until the next call.
   const Eigen::MatrixXd& Update(const PlaneValues& coefficients);
-  // Forgets what was summed up, so that values do not depend on what was decoded before a group.
+  // Sets all values to zero, so that rounding errors do not depend on what was decoded before a group.
   void Reset();
 
  private:
@@ -41,43 +41,46 @@ class PlaneField {
   Eigen::VectorXd units_;
   std::vector<std::int32_t> held_;
   Eigen::MatrixXd values_;
-  double largest_ = 0;  // sum of magnitudes since values_ were zero
+  double largest_ = 0;  // largest sum of coefficient magnitudes since values_ were zero
 };
 
-// The unit of each row of a plane in harmonics (spec.md 6.5.1): a sixteenth of the header's step. It is larger in small
-// components, whose vertices are few; and patches share the error of a vertex among their harmonics.
+// The unit of the coefficients in each row of `plane` (spec.md 6.5.1): a sixteenth of the header's step, scaled by the
+// size of the row's component. The units of motion and displacement are larger in components with few vertices. The
+// unit of detail is divided by the square root of the patch's number of vertices, so that the error of a vertex does
+// not depend on the number of harmonics.
 Eigen::VectorXd PlaneUnits(const Shape& shape, const SequenceHeader& header, Plane plane);
 
-// Turns coefficients into positions: the one body that encoder and decoder call.
+// Turns coefficients into positions. Encoder and decoder both call it.
 class Reconstructor {
  public:
-  // `shape` must outlive it. Call StartGroup() first, then for each frame StartFrame() and
-  // Reconstruct() or its parts.
+  // `shape` must outlive the object. Call StartGroup() first, then for each frame StartFrame() and Reconstruct() or its
+  // parts.
   Reconstructor(const Shape& shape, const SequenceHeader& header);
 
-  // Forgets the frames before, so that a group decodes alike wherever decoding begins. False when the reference shape
-  // cannot be factorized.
+  // Forgets all frames before, so that a group decodes to the same positions wherever decoding begins. Returns false
+  // when the linear system of the reference shape cannot be factorized.
   bool StartGroup();
-  // Sets the reference shape of the next frame: M'0, but of `previous` the last frame reconstructed, unless `intra`.
+  // Sets the reference shape of the next frame. It is M'0, but in a stream that references the previous frame it is the
+  // frame reconstructed last, unless `intra`. Returns false when its linear system cannot be factorized.
   bool StartFrame(bool intra);
 
-  // What the motion plane alone gives, before the rigid motion.
+  // The positions that the motion plane alone gives, before the rigid motion, model units.
   const PositionMatrix& ReconstructMotion(const PlaneValues& motion);
-  // Adds another plane, in their order, to what there is of the frame.
+  // Adds the values of another plane to the positions of the frame, in the order of planes, and returns the positions.
   const PositionMatrix& Add(Plane plane, const PlaneValues& values);
   // The transform of a rigid motion (spec.md 6.5.4).
   RigidTransform TransformOf(const RigidMotion& rigid) const;
-  // The transform at `t` between two rigid motions, 0: `from`, 1: `to`. The rotation takes the shorter way, whatever
-  // turns the rotation vectors have in them: each group unwraps rotations from its own begin. Non-normative.
+  // The transform at `t` between two rigid motions: `from` at 0, `to` at 1. The rotation takes the shorter way, because
+  // the rotation vectors of two groups may differ by full turns: each group unwraps rotations from its own beginning.
+  // Non-normative.
   RigidTransform TransformBetween(const RigidMotion& from, const RigidMotion& to, double t) const;
 
-  // The positions `aligned` after a rigid motion, model units.
+  // Applies a rigid motion to the positions `aligned`, model units.
   PositionMatrix ApplyRigid(const PositionMatrix& aligned, const RigidMotion& rigid) const;
   // The inverse of ApplyRigid(), for encoders.
   PositionMatrix RemoveRigid(const PositionMatrix& positions, const RigidMotion& rigid) const;
 
-  // All of the above: the positions, model units, of a frame with these planes and transform. The matrix is overwritten
-  // by the next call.
+  // The positions, model units, of a frame with these planes and transform. The next call overwrites the matrix.
   const PositionMatrix& Reconstruct(const FramePlanes& planes, const RigidTransform& transform);
   const PositionMatrix& Reconstruct(const FrameCoefficients& frame) {
     return Reconstruct(frame.planes, TransformOf(frame.rigid));
@@ -92,13 +95,13 @@ class Reconstructor {
 
   const Shape& shape_;
   SequenceHeader header_;
-  std::vector<PlaneField> fields_;  // of the planes in harmonics
+  std::vector<PlaneField> fields_;  // one for each plane in harmonics
   double correction_unit_;
   PoissonSystem poisson_;
   bool reference_is_key_ = false;
   DeformationGradients gradients_;
   PositionMatrix aligned_;  // the frame before its rigid motion
-  PositionMatrix moved_;    // and after it
+  PositionMatrix moved_;    // the frame after its rigid motion
 };
 
 }  // namespace sac

@@ -12,10 +12,10 @@ namespace sac {
 
 namespace {
 
-constexpr std::uint64_t kFactorMemory = 12;  // a value: a double and its row
-constexpr std::uint64_t kFieldMemory = 700;  // a vertex, of a Reconstructor and the frames that it has ready
+constexpr std::uint64_t kFactorMemory = 12;  // bytes per value of a sparse factor: a double and its row
+constexpr std::uint64_t kFieldMemory = 700;  // bytes per vertex of a Reconstructor and of the frames it has ready
 
-// Judges the sizes of the harmonics, and adds up their work.
+// Checks the sizes of the harmonics against the limits and notes in `shape` their work and memory.
 Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> components,
                       std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic, const Limits& limits,
                       Shape& shape) {
@@ -45,8 +45,10 @@ Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> c
   return Status::Ok();
 }
 
-// Judges what the sparse linear systems take: one of the mesh, two of its parts, and in each frame against the one
-// before another.
+// Checks the work and memory of the sparse linear systems against the limits and adds them to those of `shape`. The
+// factorization of the whole mesh's Laplacian is analyzed here, and those of its components and patches are counted as
+// no larger: the shape is charged with the work of three and the memory of two, and each frame that references the
+// frame before with the work of one more.
 Status CheckSystems(const SequenceHeader& header, const Limits& limits, Shape& shape) {
   const auto vertices = static_cast<std::uint32_t>(shape.vertices());
   const FactorSize max_size{std::min(limits.expert.factor_values, (limits.memory - shape.memory) / (2 * kFactorMemory)),
@@ -118,7 +120,7 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
   shape.layouts = LayOutPlanes(header, counts, patch_sizes);
   SAC_RETURN_IF_ERROR(CheckSystems(header, limits, shape));
   if (header.detail_step > 0) {
-    // Every vertex alike: a plain orthogonal basis of each patch.
+    // Equal masses make the harmonics of each patch orthogonal without weights.
     const Eigen::VectorXd alike = Eigen::VectorXd::Ones(shape.positions.rows());
     SAC_RETURN_IF_ERROR(ComputeHarmonics({shape.edges, shape.weights, alike, mesh.grid, mesh.patches, patch_sizes}, {},
                                          shape.patch_basis));

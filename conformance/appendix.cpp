@@ -15,7 +15,7 @@
 namespace sac {
 namespace {
 
-// Lines of bytes with what they are.
+// A listing: lines of bytes in hexadecimal with their meaning.
 class Listing {
  public:
   void Add(std::span<const std::uint8_t> bytes, const std::string& meaning) {
@@ -128,7 +128,7 @@ std::string PositionListing() {
   return text;
 }
 
-// Puts `content` between the fences of an example.
+// Replaces the text between the fences of the example `id` by `content`. Returns false when the example is missing.
 bool Replace(std::string& text, const std::string& id, const std::string& content) {
   const std::string open = "```example " + id + "\n";
   const std::size_t at = text.find(open);

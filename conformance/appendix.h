@@ -5,8 +5,8 @@
 
 namespace sac {
 
-// Writes the bytes and the positions of SmallStream() into the examples of spec.md, appendix A. False when the file or
-// the examples are missing.
+// Writes the bytes and the decoded positions of SmallStream() into the examples of spec.md, appendix A. Returns false
+// when the file or the examples are missing.
 bool UpdateAppendix(const std::filesystem::path& spec);
 
 }  // namespace sac

@@ -11,15 +11,17 @@
 
 namespace sac {
 
-// Reads the integers of a stream without any float: calls `take` for each frame, group after group and by time within
-// each, with its slot (the references it really has) and its coefficients.
+// Reads the coefficients of a stream without any floating-point arithmetic. Calls `take` for each frame with its slot,
+// which has the references that the frame uses, and its coefficients. Groups come in the order of the stream, and the
+// frames of a group in display order.
 Status ReadCoefficients(std::span<const std::uint8_t> stream,
                         const std::function<void(const FrameSlot&, const FrameCoefficients&)>& take);
 
-// Goes on with the CRC-32 of a frame's coefficients (conformance/README.md): what a decoder must get exactly right.
+// Continues the CRC-32 `crc` with a frame's coefficients (conformance/README.md), which every decoder must decode
+// exactly.
 std::uint32_t CoefficientsCrc32(const FrameCoefficients& coefficients, std::uint32_t crc);
 
-// Of all frames of a stream.
+// Computes the CRC-32 of the coefficients of all frames of a stream.
 Status CoefficientsCrc32(std::span<const std::uint8_t> stream, std::uint32_t& crc);
 
 }  // namespace sac

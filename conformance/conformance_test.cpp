@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decodes the vectors of conformance/ and compares with its manifest.
+// Decodes the vectors of conformance/ and compares the results with the manifest.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -96,7 +96,7 @@ TEST(Conformance, ValidStreamsDecode) {
     ASSERT_TRUE(CoefficientsCrc32(bytes, crc).ok());
     EXPECT_EQ(crc, std::stoul(vector.at("coefficients_crc32").get<std::string>(), nullptr, 16));
 
-    // spec.md 8: the tolerance, and what rounding to binary32 adds here and in the manifest.
+    // The tolerance of spec.md 8, plus the rounding to binary32 here and in the manifest.
     const double diagonal = BoundingBox(mesh.positions).diagonal();
     const double tolerance = 1e-6 * std::max(diagonal, static_cast<double>(d.decoder.info()->position_step));
     for (const Json& row : vector.at("positions")) {
@@ -120,7 +120,7 @@ TEST(Conformance, InvalidStreamsAreRefused) {
   }
 }
 
-// Every rule of spec.md 11 has a file, but for those that none of 10 kB can break.
+// Every rule of spec.md 11 has a file, except for the rules that no stream of 10 kB can break.
 TEST(Conformance, EveryRuleHasAFile) {
   std::set<std::string> rules, broken;
   std::ifstream spec(SAC_SPEC);
@@ -132,7 +132,7 @@ TEST(Conformance, EveryRuleHasAFile) {
   EXPECT_EQ(broken, rules);
 }
 
-// Prints the decoder's messages, for a person to see that each file is refused for its own reason.
+// Prints the decoder's messages, so that a person can see that each file is refused for the intended reason.
 TEST(Conformance, MessagesAreOfOneLine) {
   for (const Json& vector : Manifest().at("invalid")) {
     const Decoding d = Decode(Read(vector.at("file")));

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decodes a Draco mesh from standard input and writes what spec.md 5.1 takes of it to standard output, as JSON:
+// Decodes a Draco mesh from standard input and writes the values that spec.md 5.1 uses to standard output, as JSON:
 //
-//   remaining   bytes behind the mesh
+//   remaining   number of bytes after the mesh
 //   points      number of points
-//   faces       three points a face
-//   attributes  for each: type and data_type by Draco's numbers, components, indices: the value of each point,
-//               and values in the order in which they are coded, floats and integers of 32 bits as their bits
+//   faces       three points for each face
+//   attributes  for each attribute: type and data_type (Draco's numbers), components, indices (for each point the index
+//               of its value), and values in the order in which they are coded, where floats and integers of 32 bits
+//               are given by their bits
 //
-// Exit code 3 if Draco cannot decode it: no code that a sanitizer ends with. Part of the decoder in
-// conformance/decoder, and linked to Draco alone, so that nothing of sac's own decoder is in that one.
+// The exit code is 3 if Draco cannot decode the mesh, which no sanitizer exits with. The program is part of the decoder
+// in conformance/decoder and is linked to Draco only, so that this decoder shares no code with sac's own.
 
 #include <draco/compression/decode.h>
 
@@ -26,7 +27,7 @@ void WriteValues(const draco::PointAttribute& attribute) {
   const bool bytes = attribute.data_type() == draco::DT_UINT8;
   const bool words = attribute.data_type() == draco::DT_INT32 || attribute.data_type() == draco::DT_FLOAT32;
   std::printf("\"values\":[");
-  // What spec.md 5.1 knows nothing of is told by its type alone.
+  // Attributes that spec.md 5.1 does not use are listed with their type only.
   const std::size_t count = bytes || words ? attribute.size() : 0;
   std::vector<std::uint8_t> narrow(static_cast<std::size_t>(components));
   std::vector<std::uint32_t> wide(static_cast<std::size_t>(components));

@@ -11,20 +11,20 @@
 
 namespace sac {
 
-// The malformed streams so far. Each function adds one stream that breaks `rule` of spec.md 11, under the name
-// RULE_NAME, and `status` is what a decoder answers.
+// A list of malformed streams. Each member function adds one stream that breaks `rule` of spec.md 11, with the file
+// name RULE_NAME and the status that a decoder must return.
 struct Collection {
   void Add(const char* rule, const char* name, Bytes stream, const char* status = "corrupt");
 
-  // Adds the small stream with its parts changed.
+  // Adds SmallStream() after `change` has changed its parts.
   void Change(const char* rule, const char* name, const std::function<void(StreamParts&)>& change,
               const char* status = "corrupt");
 
-  // Adds the small stream with its packets changed: their payloads, or their order and number.
+  // Adds SmallStream() after `change` has changed its packets: their payloads, order or number.
   void ChangePackets(const char* rule, const char* name,
                      const std::function<void(std::vector<std::pair<PacketType, Bytes>>&)>& change);
 
-  // Adds the small stream with a group of `frames` frames that `fill` makes (CodeGroup()).
+  // Adds SmallStream() with a group of `frames` frames that `fill` makes (see CodeGroup()).
   void ChangeGroup(const char* rule, const char* name, std::uint32_t frames, std::uint32_t pyramid,
                    const std::function<void(std::uint32_t, FrameSyntax&)>& fill, std::uint8_t reference_shape = 0,
                    const char* status = "corrupt");
@@ -32,7 +32,7 @@ struct Collection {
   std::vector<InvalidVector> vectors;
 };
 
-// The streams by subject, in the order of the manifest.
+// Each of these adds the malformed streams of one subject. They are called in the order of the manifest.
 void AddPackets(Collection& c);
 void AddRecords(Collection& c);
 void AddHeader(Collection& c);

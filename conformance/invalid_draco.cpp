@@ -24,7 +24,7 @@ void AddAttribute(draco::Mesh& mesh, Attribute::Type type, draco::DataType data_
   }
 }
 
-// An octahedron as Draco codes it. `add` adds attributes to six points.
+// An octahedron coded by Draco. `add` adds attributes to the mesh, which has six points.
 Bytes DracoOctahedron(const std::function<void(draco::Mesh&)>& add, bool integer_positions = true,
                       bool edgebreaker = true) {
   const std::vector<Triangle> triangles = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},

@@ -8,14 +8,14 @@
 namespace sac {
 namespace {
 
-// The small stream with its I-frame changed.
+// Adds SmallStream() after `change` has changed its I-frame.
 void ChangeIFrame(Collection& c, const char* rule, const char* name, const std::function<void(IFrameSyntax&)>& change,
                   const char* status = "corrupt") {
   c.Change(
       rule, name, [&](StreamParts& p) { change(p.i_frame); }, status);
 }
 
-// Rules of the lists of an I-frame.
+// Adds streams that break the rules of the lists of an I-frame.
 void AddIFrameLists(Collection& c) {
   ChangeIFrame(c, "R25", "count", [](IFrameSyntax& s) {
     for (std::uint32_t i = 1; i <= 7; ++i) s.welds.push_back({i, 0});
@@ -36,12 +36,12 @@ void AddIFrameLists(Collection& c) {
   ChangeIFrame(c, "R29", "missing", [](IFrameSyntax& s) { s.order = {0, 1, 2, 4}; });
 }
 
-// Rules of the shape that decoders derive from an I-frame.
+// Adds streams that break the rules of the shape that decoders derive from an I-frame.
 void AddShape(Collection& c) {
   c.Change("R40", "vertices", [](StreamParts& p) { ++p.header.vertices; });
   c.Change("R41", "triangles", [](StreamParts& p) { ++p.header.triangles; });
   ChangeIFrame(c, "R42", "components", [](IFrameSyntax& s) { s.harmonics = {2, 1}; });
-  c.Change("R43", "harmonics", [](StreamParts& p) {  // a component of one vertex, one of three
+  c.Change("R43", "harmonics", [](StreamParts& p) {  // a component of one vertex and one of three
     p.i_frame.loose_triangles = {{1, 2, 3}, {1, 2, 3}};
     p.i_frame.harmonics = {2, 1};
   });
@@ -61,7 +61,7 @@ void AddShape(Collection& c) {
       "limit");
   c.Change(
       "R44", "patches",
-      [](StreamParts& p) {  // so many vertices that their patches could be too much, each a component
+      [](StreamParts& p) {  // components of one vertex each, so many that their patches exceed a limit
         p.header.vertices = p.header.harmonics = 262145;
         p.header.triangles = 0;
         p.header.patch_size = 1024;
@@ -71,7 +71,7 @@ void AddShape(Collection& c) {
         p.groups.clear();
       },
       "limit");
-  c.Change("R45", "path", [](StreamParts& p) {  // a path, at one position: eigenvalues all but equal
+  c.Change("R45", "path", [](StreamParts& p) {  // a path at one position: almost equal eigenvalues
     constexpr std::uint32_t kVertices = 300;
     p.header.vertices = kVertices;
     p.header.triangles = kVertices - 1;
@@ -85,7 +85,7 @@ void AddShape(Collection& c) {
   });
 }
 
-// Rules of the fingerprint of the harmonics.
+// Adds streams that break the rules of the fingerprint of the harmonics.
 void AddFingerprint(Collection& c) {
   ChangeIFrame(
       c, "R46", "eigenvalues", [](IFrameSyntax& s) { s.fingerprint[0] *= 1.001f; }, "unsupported");

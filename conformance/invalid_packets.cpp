@@ -10,7 +10,7 @@ namespace {
 
 using Packets = std::vector<std::pair<PacketType, Bytes>>;
 
-// Rules of packets and their order.
+// Adds streams that break the rules of packets and their order.
 void AddFraming(Collection& c) {
   const Bytes good = SmallStream().Join();
   Bytes bytes = good;
@@ -57,7 +57,7 @@ void AddFraming(Collection& c) {
   c.ChangePackets("R58", "long", [](Packets& p) { p[3].second.push_back(0); });
 }
 
-// Rules of the end packet and its index.
+// Adds streams that break the rules of the end packet and its index.
 void AddEnd(Collection& c) {
   const auto index = [&](const char* rule, const char* name, const std::function<void(EndSyntax&)>& change) {
     c.ChangePackets(rule, name, [&](Packets& p) {
@@ -82,7 +82,7 @@ void AddEnd(Collection& c) {
   c.ChangePackets("R59", "too_many", [](Packets& p) { p[3].second = {4}; });
 }
 
-// Rules of what a packet holds: payloads that are longer or shorter than their syntax.
+// Adds streams whose payloads are longer or shorter than their syntax.
 void AddPayloads(Collection& c) {
   c.ChangePackets("R12", "long", [](Packets& p) { p[0].second.push_back(0); });
   c.ChangePackets("R12", "short", [](Packets& p) { p[0].second.pop_back(); });
@@ -115,7 +115,7 @@ void AddPackets(Collection& c) {
 }
 
 void AddRecords(Collection& c) {
-  // The small stream's second half: an open group of two frames. `change` is given its records after the packet.
+  // Adds SmallStream() followed by an open group of two frames. `change` gets the bytes of the group's records.
   const auto records = [&](const char* rule, const char* name, const std::function<void(Bytes&)>& change,
                            const char* status = "corrupt", bool cut = false) {
     StreamParts parts = SmallStream();
@@ -148,7 +148,7 @@ void AddRecords(Collection& c) {
         b = huge.bytes();
       },
       "limit");
-  // Frames whose checks are right.
+  // These records are malformed although their CRC-32 is right.
   const auto frame = [&](const char* rule, const char* name, const Bytes& code) {
     StreamParts parts = SmallStream();
     RecordWriter writer;

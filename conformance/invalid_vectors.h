@@ -9,13 +9,13 @@
 namespace sac {
 
 struct InvalidVector {
-  std::string rule;  // of spec.md 11
+  std::string rule;  // the rule of spec.md 11 that the stream breaks
   std::string name;
   std::string status;  // "corrupt", "unsupported" or "limit"
   Bytes stream;
 };
 
-// Streams that each break one rule.
+// All malformed streams. Each breaks one rule.
 std::vector<InvalidVector> InvalidVectors();
 
 }  // namespace sac

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Writes all conformance vectors and their manifest, and the examples of spec.md, appendix A, which is in the directory
-// above: make_vectors DIRECTORY. See README.md.
+// make_vectors DIRECTORY writes all conformance vectors and their manifest into DIRECTORY, and the examples of appendix
+// A into spec.md in the directory above. See README.md.
 #include <algorithm>
 #include <cstdio>
 #include <filesystem>
@@ -111,7 +111,7 @@ int Main(const std::filesystem::path& directory) {
     good = Write(directory / file, v.stream) && good;
     manifest["invalid"].push_back({{"file", file}, {"rule", v.rule}, {"class", v.status}});
   }
-  // One line a vector, so that changes can be read.
+  // The manifest has one line per vector, so that changes can be read as a diff.
   std::ofstream file(directory / "manifest.json");
   file << "{\n";
   for (const char* part : {"valid", "invalid"}) {

@@ -149,7 +149,7 @@ StreamParts SmallStream() {
   h.correction_step = 0.03125f;
   h.rotation_step = 0.125f;
   h.translation_step = 0.5f;
-  // A square with one corner bent. Patches change the order of vertices 1 and 2.
+  // A square with one corner bent. Vertices 1 and 2 change places, since vertices are ordered by patches.
   for (const std::array<std::uint32_t, 3>& g : {std::array{0u, 0u, 0u}, {8u, 7u, 0u}, {8u, 0u, 0u}, {0u, 9u, 3u}}) {
     parts.i_frame.loose_vertices.push_back({g, {}, {}});
   }
@@ -167,7 +167,7 @@ StreamParts SmallStream() {
       frame.planes[kDetail][3] = -4;
       frame.planes[kCorrection][11] = 2;
     }
-    if (i == 2) frame.planes[kMotion][18 + 1] = -2;  // frame 1: half way, and some more
+    if (i == 2) frame.planes[kMotion][18 + 1] = -2;  // frame 1: the mean of frames 0 and 2, and a residual
   }));
   return parts;
 }

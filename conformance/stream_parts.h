@@ -19,14 +19,14 @@ namespace sac {
 
 using Bytes = std::vector<std::uint8_t>;
 
-// The pieces of a stream, to be changed one by one and put together again. All failures end the program: the vectors
-// are made of known input.
+// The parts of a stream, which can be changed one by one and put together again. All failures end the program, since
+// the vectors are made from known input.
 struct StreamParts {
   SequenceHeader header;
   IFrameSyntax i_frame;
-  std::vector<Bytes> groups;       // payloads
-  std::vector<Bytes> open_groups;  // after the others; packets and records
-  std::uint32_t frames = 0;        // that the end packet says
+  std::vector<Bytes> groups;       // payloads of the whole groups
+  std::vector<Bytes> open_groups;  // packets and records of the open groups, which follow the whole ones
+  std::uint32_t frames = 0;        // number of frames in the end packet
   PlaneLayouts layouts;            // see Derive()
 
   Bytes Join() const;
@@ -35,23 +35,24 @@ struct StreamParts {
 Bytes Encode(const Clip& clip, const EncoderSettings& settings);
 StreamParts Split(const Bytes& stream);
 
-// Fills in what follows from the header and the I-frame: the fingerprint, and the layouts that CodeGroup() needs.
+// Computes the members that depend on the header and the I-frame: the fingerprint, and the layouts that CodeGroup()
+// needs.
 void Derive(StreamParts& parts);
 
-// The first packets of a stream, and what may follow them.
+// The bytes that a stream begins with, and a packet put after `stream`.
 Bytes Magic();
 void AppendPacket(Bytes& stream, PacketType type, const Bytes& payload);
 
-// Codes a group whose frames `fill` makes: it is given each frame's number in coding order, with the structure's slot
-// and zeros in it. Stops after a frame that the format does not allow, which is then in the code all the same.
+// Codes a group. `fill` makes each frame: it gets the frame's number in coding order, and the frame with the slot of
+// the group structure and zeros. Coding stops after a frame that the format does not allow, which is still in the code.
 Bytes CodeGroup(const StreamParts& parts, std::uint32_t frames, std::uint32_t pyramid,
                 const std::function<void(std::uint32_t, FrameSyntax&)>& fill, std::uint32_t first_frame = 0);
 
-// The packet of an open group and its records.
+// Codes the packet of an open group and its records.
 Bytes CodeOpenGroup(const StreamParts& parts, std::uint32_t frames,
                     const std::function<void(std::uint32_t, FrameSyntax&)>& fill, std::uint32_t first_frame = 0);
 
-// Four vertices and two triangles without Draco's help, and three frames: the stream of spec.md, appendix A.
+// The stream of spec.md, appendix A: four vertices and two triangles, coded without Draco, and three frames.
 StreamParts SmallStream();
 
 }  // namespace sac

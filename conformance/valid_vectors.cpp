@@ -10,7 +10,7 @@
 namespace sac {
 namespace {
 
-// Residuals that no encoder would choose: of any magnitude, predicted from anything.
+// A stream with random residuals that no encoder would choose: of any magnitude, with any references.
 void FillAtRandom(std::mt19937& random, const References* references, std::uint32_t index, FrameSyntax& frame) {
   const auto residual = [&](std::uint32_t one_in, int most_bits) {
     std::int32_t value = 0;
@@ -63,7 +63,7 @@ Bytes Perverse() {
   return parts.Join();
 }
 
-// As many components of one vertex. Without Draco, too.
+// A stream of components of one vertex each, coded without Draco.
 Bytes Rows() {
   constexpr std::uint32_t kVertices = 1030;
   StreamParts parts = SmallStream();
@@ -85,7 +85,7 @@ Bytes Rows() {
   return parts.Join();
 }
 
-// A pyramid of levels to 10, of which the last two have steps at their bound, and large coefficients.
+// A pyramid with levels up to 10, whose steps reach their bound on the last two levels, and with large coefficients.
 Bytes Deep() {
   StreamParts parts = SmallStream();
   parts.header.level_growth = 120;
@@ -107,8 +107,8 @@ Bytes Deep() {
   return parts.Join();
 }
 
-// Open groups beside a whole one, with references to any earlier frame; one is empty. Without Draco, for decoders that
-// do not have it yet.
+// Open groups after a whole group, with references to any earlier frame; one of them is empty. The stream is coded
+// without Draco, so that decoders without Draco can decode it.
 Bytes OpenGroups() {
   StreamParts parts = SmallStream();
   std::mt19937 random(9);
@@ -126,7 +126,8 @@ Bytes OpenGroups() {
   return parts.Join();
 }
 
-// The start comes again and again, and an index ends it: groups of all kinds, one of no frames. Without Draco, too.
+// A stream with groups of all kinds, one of them without frames, in which the start is repeated and an index stands at
+// the end. It is coded without Draco.
 Bytes RepeatedStart() {
   StreamParts parts = SmallStream();
   const auto still = [](std::uint32_t, FrameSyntax&) {};
@@ -139,7 +140,7 @@ Bytes RepeatedStart() {
   start();
   EndSyntax end{0, StreamIndex{static_cast<std::uint32_t>(stream.size()), {}}};
   std::size_t begin = stream.size();
-  // What follows the last group is the next one's start.
+  // In the index a repeated start counts to the group before it.
   const auto group_ends = [&](std::uint32_t frames, bool again) {
     if (again) start();
     end.index->groups.push_back({static_cast<std::uint32_t>(stream.size() - begin), frames});
@@ -208,7 +209,7 @@ EncoderSettings Previous() {
   return settings;
 }
 
-// Streams of groups, references and meshes of all kinds.
+// Adds streams with groups, references and meshes of all kinds.
 void AddStructures(std::vector<ValidVector>& vectors) {
   vectors.push_back({"small", "spec.md appendix A: no Draco mesh, 3 frames in a pyramid", SmallStream().Join()});
   {
@@ -240,7 +241,7 @@ void AddStructures(std::vector<ValidVector>& vectors) {
   Add(vectors, "cuts", "intra frames within a group", Cuts(), pyramids);
 }
 
-// Streams of all planes.
+// Adds streams that use all planes.
 void AddPlanes(std::vector<ValidVector>& vectors) {
   EncoderSettings detail = Harmonics(20);
   detail.detail_step = 0.003;
@@ -257,7 +258,7 @@ void AddPlanes(std::vector<ValidVector>& vectors) {
   Add(vectors, "one_frame", "a single frame", Synth(SynthKind::kSphere, 100, 1), Harmonics(24));
 }
 
-// Streams of the least and the most that settings and meshes allow.
+// Adds streams with the smallest and largest values that settings and meshes allow.
 void AddExtremes(std::vector<ValidVector>& vectors) {
   EncoderSettings groups_of_one = Harmonics(24);
   groups_of_one.group = 1;
@@ -277,7 +278,7 @@ void AddExtremes(std::vector<ValidVector>& vectors) {
   Add(vectors, "fine", "a grid of 2^24 places, steps of one", Synth(SynthKind::kSphere, 60, 3), fine);
 }
 
-// Streams of open groups, and what no encoder would choose.
+// Adds streams with open groups, and streams that no encoder would choose.
 void AddOpenGroups(std::vector<ValidVector>& vectors) {
   EncoderSettings low_delay = Harmonics(24);
   low_delay.low_delay = true;

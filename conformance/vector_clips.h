@@ -9,24 +9,26 @@
 
 namespace sac {
 
-// A synthetic clip; a failure ends the program.
+// A synthetic clip. A failure ends the program.
 Clip Synth(SynthKind kind, std::uint32_t vertices, std::uint32_t frames);
 
-// Frames that wave the mesh and turn it.
+// A clip in which `mesh` waves and turns.
 Clip Wave(const Mesh& mesh, std::uint32_t frames);
 
-// All that Draco cannot keep: two fans joined at one vertex, three triangles at an edge, a loose vertex, a degenerate
-// and a duplicate triangle, one turned around; with all attributes and a seam of texture coordinates.
+// A mesh with everything that Draco cannot keep: two fans joined at one vertex, three triangles at an edge, a loose
+// vertex, a degenerate triangle, a duplicate triangle and one with the opposite orientation. It has all attributes and
+// a seam of texture coordinates.
 Mesh OddMesh();
 
-// More neighbours, and more triangles at an edge, than the code of positions looks at (spec.md 5.5): double cones
-// around 31, 32 and 33 vertices, joined to each other, a book of 25 pages, and triangles at random.
+// A mesh with more neighbours of a vertex, and more triangles at an edge, than the prediction of positions uses
+// (spec.md 5.5): double cones around 31, 32 and 33 vertices, joined to each other, 25 triangles at one edge, and random
+// triangles.
 Mesh CrowdedMesh();
 
-// The first frame again and again, then motion, then its last frame again and again.
+// A clip that repeats its first frame, then moves, then repeats the last frame of the motion.
 Clip StandStill();
 
-// Parts that jump and turn between frames 8 and 16.
+// A clip whose parts jump and turn between frames 8 and 16.
 Clip Cuts();
 
 }  // namespace sac

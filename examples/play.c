@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/* A player without a picture: reads a stream from a file, in small pieces, and tells where a vertex goes. Twice, to
- * show how a clip is played again. */
+/* A player without a display: reads a stream from a file in small pieces and prints the positions of a vertex. It plays
+ * the clip twice, to show how a clip is played again. */
 #include <sac/sac.h>
 #include <stdio.h>
 #include <stdlib.h>

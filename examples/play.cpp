@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Decodes a stream as its bytes arrive and says what it gets: play < clip.sac
+// Decodes a stream as its bytes arrive and prints one position of each frame: play < clip.sac
 #include <cstdio>
 #include <iostream>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-/* Encodes a waving grid and decodes it again, through the interface of C alone. */
+/* Encodes a waving grid and decodes it again, using only the C interface. */
 #include <math.h>
 #include <sac/sac.h>
 #include <sac/sac_encode.h>
@@ -17,7 +17,7 @@ static void frame_at(int frame, float* positions) {
   }
 }
 
-/* The stream so far, grown by what the encoder has. */
+/* Takes the bytes that the encoder has ready and appends them to the stream. */
 static sac_status take(sac_encoder* encoder, uint8_t** stream, size_t* size) {
   const uint8_t* data;
   size_t more;

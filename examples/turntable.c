@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-/* Draws every frame of a stream into a PNG, the camera going once around, without a display: Mesa's software renderer
- * draws into memory, libpng writes it. */
+/* Draws every frame of a stream into a PNG file while the camera goes once around the shape. It needs no display:
+ * Mesa's software renderer draws into memory, and libpng writes the files. */
 #include <GL/osmesa.h>
 #include <math.h>
 #include <png.h>
@@ -18,7 +18,7 @@ struct vertex {
 struct scene {
   sac_mesh mesh;
   struct vertex* vertices;
-  double centre[3], radius; /* of the first frame */
+  double centre[3], radius; /* of the first frame, model units */
   uint8_t pixels[kSize * kSize * 4];
 };
 
@@ -61,7 +61,7 @@ static int write_png(const struct scene* s, const char* pattern, uint32_t frame)
   return 0;
 }
 
-/* Room for the vertices, interleaved as a GPU would have them. */
+/* Allocates the vertices, interleaved as a GPU would have them, and points `buffers` at them. */
 static int make_room(struct scene* s, sac_frame_buffers* buffers) {
   const size_t size = s->mesh.vertices * sizeof(struct vertex);
   s->vertices = calloc(1, size);

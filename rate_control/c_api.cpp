@@ -13,7 +13,7 @@
 namespace sac {
 namespace {
 
-// A clip that a caller's functions read.
+// A clip whose frames the caller's C functions read.
 class SourceReader : public ClipReader {
  public:
   SourceReader(Mesh mesh, const sac_frame_source& source) : mesh_(std::move(mesh)), source_(source) {}

@@ -9,14 +9,14 @@
 namespace sac {
 namespace {
 
-// Asks the caller whether to go on, from within an encoder.
+// The progress callback of an encoder that calls that of the encoding with the number of the trial.
 std::function<bool(std::uint32_t)> ProgressOf(const ClipEncoding& encoding, std::uint32_t trial) {
   if (!encoding.progress) return encoding.encoder.progress;
   return [&encoding, trial](std::uint32_t frames) { return encoding.progress({trial, frames}); };
 }
 
 Status Search(ClipReader& clip, const ClipEncoding& encoding, EncoderSettings& settings, std::uint32_t& trials) {
-  Status of_trial;  // names the clip already
+  Status of_trial;  // its message already begins with the clip's name
   const auto run = [&](Trial& trial) {
     trial.settings.progress = ProgressOf(encoding, ++trials);
     return of_trial = RunTrial(clip, trial);

@@ -13,10 +13,10 @@
 namespace sac {
 namespace {
 
-// Decodes what an encoder gives out and compares it with what went in.
+// Decodes the bytes of an encoder and measures the decoded frames against the encoder's input.
 class Measurement {
  public:
-  // `order` is the encoder's and must outlive the measurement.
+  // `order` is that of the encoder. It must outlive the object.
   Measurement(const Mesh& mesh, const std::vector<std::uint32_t>& order)
       : order_(order), meter_(mesh.triangles, mesh.positions.size()) {}
 
@@ -28,7 +28,7 @@ class Measurement {
   const std::vector<std::uint32_t>& order_;
   Decoder decoder_;
   ErrorMeter meter_;
-  std::deque<Positions> expected_;  // frames that were sent and have not come back yet
+  std::deque<Positions> expected_;  // frames that were sent to the encoder and have not been decoded yet
   DecodedFrame frame_;
   Positions in_input_order_;
 };

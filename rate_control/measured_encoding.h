@@ -13,15 +13,16 @@
 
 namespace sac {
 
-// Takes the bytes of a stream in order. A status that is not ok ends the encoding.
+// Takes the next bytes of a stream. A status that is not ok ends the encoding.
 using ByteSink = std::function<Status(std::span<const std::uint8_t> bytes)>;
 
-// `status` with its message after `name`, such as a clip's; the same when it is ok or there is no name.
+// Returns `status` with `name`, such as a clip's, put before its message. Returns it unchanged when it is ok or `name`
+// is empty.
 Status Named(const std::string& name, const Status& status);
 
-// Encodes a clip from its first frame on and, with `measure`, decodes the stream as it comes and measures it against
-// the clip. `sink` may be empty. `result` gets everything but the number of trials. Messages about the clip begin with
-// its name.
+// Encodes a clip from its first frame on. With `measure` it decodes the stream while it is encoded and measures the
+// decoded frames against the clip. `sink` gets the bytes; it may be empty. All members of `result` but the number of
+// trials are set. Error messages begin with the clip's name and, where a frame is at fault, its number.
 Status EncodeAndMeasure(ClipReader& clip, const EncoderSettings& settings, bool measure, const ByteSink& sink,
                         EncodedClip& result);
 

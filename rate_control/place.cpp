@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kLeastBits = 4, kMostBits = 20;
 
-// docs/quality.md, means of clips.
+// Means over the clips of docs/quality.md.
 constexpr std::array<Typical, 10> kTypical = {{{0, 4.8, 0.22, 0.06},
                                                {10, 2.9, 0.12, 0.085},
                                                {25, 1.9, 0.075, 0.12},
@@ -31,7 +31,7 @@ OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t f
   const double most = fixed_harmonics > 0 ? fixed_harmonics : most_harmonics;
   QualitySettings s;
   if (branch.detail) {
-    // Only rows of few harmonics, so that detail sets in early enough.
+    // Using only the table's rows with few harmonics, so that detail begins early enough.
     s = SettingsOfQuality(place.quality, {});
   } else {
     s = SmoothSettingsOfQuality(place.quality, most);
@@ -41,7 +41,7 @@ OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t f
     harmonics = std::round(std::min(s.harmonics * std::exp(place.log_harmonics), most));
     harmonics = std::clamp(harmonics, 1.0, static_cast<double>(Limits{}.expert.harmonics));
   }
-  // Beyond what docs and reports say, digits tell nothing.
+  // Position bits are rounded to three digits, as documents and reports show them.
   return {s.motion_step * std::exp(place.log_motion), s.displacement_step, s.detail_step,
           std::clamp(std::round(1e3 * (s.position_bits + place.more_bits)) / 1e3, kLeastBits, kMostBits), harmonics};
 }

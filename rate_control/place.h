@@ -8,36 +8,40 @@
 
 namespace sac {
 
-// A place near the table of qualities: steps, bits and harmonics by `quality`, and how far some are from them.
+// A point of the search space. It stands for the steps, bits and harmonics of `quality` in the table of qualities
+// (codec/encode/quality.h), some of them changed.
 struct Place {
-  double quality = 50;       // beyond 0..100 the table goes on
-  double log_motion = 0;     // log of the motion step over that of the table
-  double more_bits = 0;      // of positions
-  double log_harmonics = 0;  // likewise
+  double quality = 50;       // the table is continued below 0 and above 100
+  double log_motion = 0;     // natural logarithm of the ratio of the motion step to the table's
+  double more_bits = 0;      // position bits beyond the table's
+  double log_harmonics = 0;  // natural logarithm of the ratio of the number of harmonics to the table's
 
   bool operator==(const Place&) const = default;
 };
 
-// The two ways of coding that a search tries: the smooth planes alone, or detail over few harmonics.
+// One of the two ways of coding that a search tries, with the range of qualities tried: motion and displacement alone
+// (the smooth planes), or these with few harmonics and a detail plane.
 struct Branch {
   bool detail;
   double least_quality, most_quality;
 };
 inline constexpr Branch kSmooth{false, -40, 95}, kDetailed{true, 60.6, 125};
 
-// The harmonics are `fixed_harmonics` unless these are 0, and else no more than `most_harmonics`.
+// The settings that `place` stands for. The number of harmonics is `fixed_harmonics` or, when that is 0, at most
+// `most_harmonics`.
 OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t fixed_harmonics, double most_harmonics);
 
-// `base` with what the point says. With `fixed_harmonics` they stay as they are in `base`.
+// `base` with the settings of `point`, and with `quality` limited to 0..100.
 EncoderSettings SettingsOf(const OperatingPoint& point, double quality, const EncoderSettings& base);
 
-// Figures that a quality comes to on most clips, to begin with.
+// The errors and the rate that a quality typically gives: KG in percent, STED, and bits per vertex and frame. A search
+// begins with them.
 struct Typical {
   double quality, kg, sted, bpvf;
 };
-// The figures of a quality from 0 to 100.
+// What a quality from 0 to 100 comes to on most clips.
 Typical TypicalOf(double quality);
-// The quality at which `figure` typically comes to `target`.
+// The quality at which the member `figure` typically equals `target`.
 double TypicalQuality(double Typical::*figure, double target);
 
 }  // namespace sac

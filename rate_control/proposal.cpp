@@ -8,7 +8,7 @@
 namespace sac {
 namespace {
 
-// How far predictions are trusted.
+// An unknown, how far from the centre predictions are trusted (`reach`), and its range.
 struct Unknown {
   double Place::*value;
   double reach, least, most;
@@ -18,7 +18,8 @@ constexpr std::array<Unknown, 3> kUnknowns = {{{&Place::log_motion, 0.4, kFinest
                                                {&Place::log_harmonics, 0.25, -0.6, 0.6}}};
 constexpr double kPenalty = 1e3;
 
-// Gives `place` the quality at which the bound is just kept.
+// Sets the quality of `place`, within [low, high], to the cheapest at which the excess is at most 0, and returns the
+// cost. When there is none, returns a penalty that grows with the excess.
 double Settle(const ProposalProblem& problem, double low, double high, Place& place) {
   const double good = problem.rises ? low : high, bad = problem.rises ? high : low;
   place.quality = bad;
@@ -44,7 +45,7 @@ Place Propose(const ProposalProblem& problem, const Place& centre) {
   const std::array<bool, 3> is_free{problem.free.motion, problem.free.bits, problem.free.harmonics};
   Place best = centre;
   double least = Settle(problem, low, high, best);
-  for (double step = 0.5; step > 0.01;) {  // of the reach
+  for (double step = 0.5; step > 0.01;) {  // as a fraction of the reach
     bool better = false;
     for (std::size_t u = 0; u < kUnknowns.size(); ++u) {
       if (!is_free[u]) continue;

@@ -7,27 +7,28 @@
 
 namespace sac {
 
-// How far the unknowns go from the table of qualities.
+// The largest differences from the table of qualities that a search tries: log_motion and more_bits of Place.
 inline constexpr double kFinestMotion = -1.2, kCoarsestMotion = 1.1, kLeastMoreBits = -2, kMostMoreBits = 2.5;
 
-// The unknowns of a search beside the quality, and how far of their way from the table they may go.
+// Which unknowns of a search may vary beside the quality, and which `part` of their range (0 to 1) they may use.
 struct FreePlace {
   bool motion, bits, harmonics;
   double part;
 };
 
-// What is looked for, by predicted figures: where `excess` is 0 or less, the smallest `cost`. Both are logarithms.
-// `excess` falls with the quality, or grows, as `rises` says.
+// The problem that a proposal solves with predicted figures: to minimize `cost` where `excess` is at most 0. Both are
+// logarithms. `excess` grows with the quality if `rises`, otherwise it falls.
 struct ProposalProblem {
   std::function<double(const Place&)> excess, cost;
   bool rises;
   Branch branch;
   FreePlace free;
-  double quality_reach;  // how far predictions are trusted
+  double quality_reach;  // qualities within this distance of the centre are considered
 };
 
-// The best place near `centre`, by pattern search (Hooke and Jeeves 1961) over the free unknowns, each with the quality
-// at which `excess` is 0. Where there is none, the place of least excess.
+// Returns the best place near `centre`, by pattern search over the free unknowns (Hooke and Jeeves 1961). For each
+// place the quality is chosen at which `excess` is 0. When no place has an excess of at most 0, returns the one with
+// the least.
 Place Propose(const ProposalProblem& problem, const Place& centre);
 
 }  // namespace sac

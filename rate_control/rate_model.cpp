@@ -8,9 +8,9 @@
 namespace sac {
 namespace {
 
-constexpr double kPositionBits = 3.3;  // a vertex for one bit more on each axis
+constexpr double kPositionBits = 3.3;  // bits per vertex for one more bit on each axis
 
-// How far settings are apart, about in logarithms of what comes out.
+// A distance of two settings, scaled such that it is about the difference of the logarithms of the resulting figures.
 double Distance(const OperatingPoint& a, const OperatingPoint& b) {
   const auto ratio = [](double x, double y) { return std::abs(std::log(x / y)); };
   return 0.3 * ratio(a.motion_step, b.motion_step) + 0.3 * ratio(a.displacement_step, b.displacement_step) +
@@ -18,7 +18,7 @@ double Distance(const OperatingPoint& a, const OperatingPoint& b) {
          0.3 * std::abs(a.position_bits - b.position_bits) + 0.3 * ratio(a.harmonics, b.harmonics);
 }
 
-// Half the logarithm of a sum of parts.
+// The logarithm of the square root of a weighted sum of parts, whose weights are exp(logs).
 double LogRoot(const Eigen::Array3d& parts, const Eigen::Array3d& logs) {
   return 0.5 * std::log((parts * logs.exp()).sum());
 }
@@ -45,7 +45,7 @@ RateModel::RateModel(const std::vector<const Trial*>& trials, const Trial& centr
       kg_(Fit(trials, KgParts, &Trial::kg)),
       sted_(Fit(trials, StedParts, &Trial::sted)),
       bytes_per_bit_(kPositionBits * centre.vertices / 8) {
-  // A secant where there is one.
+  // The bytes per bit are measured where a trial has another number of position bits, and estimated otherwise.
   double widest = 0.2;
   for (const Trial* trial : trials) {
     const double bits = trial->point.position_bits - centre.point.position_bits;
@@ -65,13 +65,14 @@ RateModel::RateModel(const std::vector<const Trial*>& trials, const Trial& centr
 
 RateModel::Sum RateModel::Fit(const std::vector<const Trial*>& trials, Parts (*parts)(const OperatingPoint&),
                               double Trial::*figure) const {
-  // Levenberg's method. Without evidence the parts stay as they are on other clips; shares there differ by a factor of
-  // two or so. Figures of small meshes scatter by a few percent from one setting to the next.
+  // Levenberg's method with a prior: without evidence the parts stay as they are on a typical clip. kPriorSpread says
+  // that the parts of clips differ by a factor of about two, kNoise that the figures of small meshes scatter by a few
+  // percent from one setting to the next.
   constexpr double kPriorSpread = 0.7, kNoise = 0.02, kModelError = 0.25;
   Sum sum{Parts::Zero(), std::log(centre_.*figure) - LogRoot(parts(centre_.point), Parts::Zero())};
   for (int iteration = 0; iteration < 20; ++iteration) {
     Eigen::Matrix4d normal = Eigen::Matrix4d::Identity() / (kPriorSpread * kPriorSpread);
-    normal(3, 3) = 0;  // of the scale nothing is known before
+    normal(3, 3) = 0;  // there is no prior for the scale
     Eigen::Vector4d right;
     right << -sum.logs.matrix() / (kPriorSpread * kPriorSpread), 0;
     for (const Trial* trial : trials) {
@@ -92,7 +93,8 @@ RateModel::Sum RateModel::Fit(const std::vector<const Trial*>& trials, Parts (*p
 }
 
 RateFigures RateModel::Predict(const OperatingPoint& p) const {
-  // What the formulas miss, by inverse distances (Shepard 1968). Bytes scatter less than the others.
+  // The errors of the formulas at the trials are interpolated by inverse distance weighting (Shepard 1968). Bytes
+  // scatter less than KG and STED, so they follow the nearest trial more closely.
   constexpr double kBytesReach = 0.01, kErrorReach = 0.05;
   Eigen::Array3d sum = Eigen::Array3d::Zero(), weights = Eigen::Array3d::Zero();
   for (const Miss& miss : misses_) {

@@ -16,18 +16,21 @@
 namespace sac {
 namespace {
 
-constexpr double kBand = 0.0304;  // a figure is near its target from 97 % on, a logarithm
-// What predictions aim at, so that their error stays within: farther with each trial in a row that missed.
+// Excess, cost and their differences are natural logarithms.
+constexpr double kBand = 0.0304;  // a figure of at least 97 % of its target is near it
+// The excess that proposals aim at is below 0, so that the error of the prediction does not exceed the target. It falls
+// by kAim with each trial in a row that exceeded the target, down to kFarthestAim.
 constexpr double kAim = -0.004, kFarthestAim = -0.024;
-constexpr double kGain = 0.0025;   // times the trials so far: less is not worth another
-constexpr double kFar = 0.15;      // from the targets only the quality changes
-constexpr double kBehind = 0.1;    // a branch that is behind the other by so much is given up
-constexpr double kHopeless = 0.3;  // beyond the targets, at the finest place
-constexpr int kMostTrials = 12;    // in a branch
-// How near to where detail becomes cheaper a smooth place is for both to be tried.
+constexpr double kGain = 0.0025;   // a predicted gain in cost below this times the number of trials ends the search
+constexpr double kFar = 0.15;      // farther from the targets than this, only the quality changes
+constexpr double kBehind = 0.1;    // a branch whose predicted cost is higher than the other's by this is given up
+constexpr double kHopeless = 0.3;  // a predicted excess above this at the finest place ends a branch
+constexpr int kMostTrials = 12;    // trials in a branch
+// Detail is tried after the smooth planes when their best quality is above kSmoothWins. After detail, the smooth planes
+// are tried when its best quality is below kDetailWins.
 constexpr double kSmoothWins = 62, kDetailWins = 84;
 
-// When decoders refuse as many harmonics.
+// When decoders refuse a number of harmonics, kFewer times as many are tried, as long as it exceeded kFewestHarmonics.
 constexpr double kFewer = 0.9, kFewestHarmonics = 20;
 
 double LogRatio(double figure, double target) { return std::log(std::max(figure, 1e-12) / target); }
@@ -52,12 +55,13 @@ class Search {
   };
 
   bool BoundsDistortion() const { return targets_.kg || targets_.sted; }
-  // What is to be 0 or less: how far the figure that is nearest to or furthest beyond its target is beyond it.
+  // The largest logarithm of the ratio of a bounded figure to its target. The targets are met when it is at most 0.
   double Excess(const RateFigures& figures) const;
-  // Less is better, among trials that are not beyond a target; a logarithm.
+  // What is minimized among the trials that meet the targets, as a logarithm: the bytes when an error is bounded,
+  // otherwise the product of the errors.
   double Cost(const RateFigures& figures) const;
   RateFigures FiguresOf(const Trial& t) const { return {static_cast<double>(t.bytes), t.kg, t.sted}; }
-  // Of trials, what is beyond a target is counted as what it takes to mend it.
+  // The cost of a trial, plus its excess times the cost that it takes to reduce the excess. Less is better.
   double Merit(const Tried& tried) const;
 
   Place Extreme(const Branch& branch) const;
@@ -66,18 +70,18 @@ class Search {
   OperatingPoint Point(const Place& place, const Branch& branch) const {
     return PointOf(place, branch, base_.harmonics.value_or(0), most_harmonics_);
   }
-  // The best trial of a branch that is not beyond a target.
+  // The cheapest trial of a branch that meets the targets, null when there is none.
   const Tried* Best(bool detail) const;
   Status Choose(Trial& best) const;
   Status Unreachable() const;
 
   const RateTargets& targets_;
   const EncoderSettings& base_;
-  double most_harmonics_;  // that pay, and that decoders allow
+  double most_harmonics_;  // largest number of harmonics that is worth trying and that decoders allow
   const std::function<Status(Trial&)>& run_;
   const FreePlace free_;
   std::deque<Tried> tried_;
-  double bytes_of_bpvf_ = 0;  // known from the first trial on
+  double bytes_of_bpvf_ = 0;  // bytes for one bit per vertex and frame; known from the first trial on
 };
 
 double Search::Excess(const RateFigures& figures) const {
@@ -166,7 +170,7 @@ Status Search::SearchBranch(const Branch& branch, double quality) {
   }
 }
 
-// The place that comes nearest to keeping a bound.
+// The place of the branch with the smallest errors.
 Place Search::Extreme(const Branch& branch) const {
   Place place;
   place.quality = branch.most_quality;
@@ -176,15 +180,16 @@ Place Search::Extreme(const Branch& branch) const {
 }
 
 Status Search::Run(Trial& best) {
-  // 1. Where to begin, by what is typical.
+  // 1. Begin with the quality that typically meets the targets.
   double quality = kSmooth.least_quality;
   if (targets_.kg) quality = std::max(quality, TypicalQuality(&Typical::kg, *targets_.kg));
   const double for_kg = quality;
   if (targets_.sted) quality = std::max(quality, TypicalQuality(&Typical::sted, *targets_.sted));
   if (!BoundsDistortion()) quality = TypicalQuality(&Typical::bpvf, *targets_.bpvf);
 
-  // 2. Smooth planes alone, then detail, unless one of the two is clearly the way. Only smooth planes can be coarse; a
-  // STED that detail reaches, they may reach for less.
+  // 2. Try the smooth planes alone, then detail, unless one of the two is clearly cheaper. Targets for KG or the rate
+  // that are typical of detail are tried with detail first. With a target for STED the smooth planes are tried too,
+  // since they may reach it with fewer bytes.
   const bool first_detail = for_kg > kDetailQuality || (!targets_.sted && quality > kDetailQuality);
   if (first_detail) SAC_RETURN_IF_ERROR(SearchBranch(kDetailed, quality));
   const Tried* detailed = Best(true);

@@ -10,12 +10,13 @@
 
 namespace sac {
 
-// Searches the settings that reach `targets`. Steps, position bits and quality are chosen here, and the number of
-// harmonics unless `base` has it; everything else comes from `base`.
+// Searches the settings that reach `targets`. The search chooses the steps, the position bits, the quality and, unless
+// `base` sets it, the number of harmonics. All other settings come from `base`.
 //
-// `run` encodes and measures with the settings of a trial. It is called 3 to 12 times, and up to 24 times where detail
-// and more harmonics are about equal. `vertices` of the clip bound the number of harmonics that are worth trying.
-// Returns kInvalidArgument with a message that says what was reached when the targets cannot be met.
+// `run` encodes and measures with the settings of a trial. It is called 3 to 12 times, and up to 24 times where coding
+// with and without a detail plane costs about the same. `vertices`, the clip's number of vertices, bounds the number of
+// harmonics that are tried. Returns kInvalidArgument for targets that are not positive, and when the targets cannot be
+// met, with a message that says what was reached; otherwise the errors of `run`.
 Status SearchTargets(const RateTargets& targets, const EncoderSettings& base, std::uint32_t vertices,
                      const std::function<Status(Trial&)>& run, Trial& best);
 

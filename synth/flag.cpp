@@ -12,7 +12,7 @@ namespace {
 constexpr double kWidth = 1.5, kHeight = 1;  // metres
 constexpr double kDroop = 0.12;              // how far the free end sinks
 
-// A wave of the cloth's slope, travelling away from the pole: its angle is
+// A wave that travels away from the pole. It bends the cloth by an angle (radians) of
 // amplitude sin(along x + across y - rate t + phase).
 struct Wave {
   double amplitude, along, across, rate, phase;
@@ -38,8 +38,8 @@ Waves RandomWaves(double step, Random& random) {
   return waves;
 }
 
-// The cloth runs from the pole in steps of constant length whose direction is the waves' slope: it bends but does not
-// stretch along its rows.
+// The positions of the cloth at time `t` (seconds). Each row runs from the pole in steps of constant length whose
+// directions are given by the waves, so that the cloth bends but does not stretch along its rows.
 Positions Blow(const Waves& waves, std::uint32_t columns, std::uint32_t rows, double t) {
   const double gust = 1 + 0.35 * std::sin(1.3 * t) * std::sin(0.7 * t + 1);
   const double step = kWidth / (columns - 1);
@@ -77,7 +77,7 @@ Animation MakeFlag(std::uint32_t vertices, Random random) {
       mesh.uvs.push_back({static_cast<float>(c) / (columns - 1), static_cast<float>(r) / (rows - 1)});
       if (r + 1 == rows || c + 1 == columns) continue;
       const std::uint32_t a = r * columns + c, b = a + 1, d = a + columns, e = d + 1;
-      // Alternating diagonals, so that the cloth has no preferred side.
+      // The diagonals alternate, so that the cloth has no preferred direction.
       if ((r + c) % 2 == 0) {
         mesh.triangles.insert(mesh.triangles.end(), {{a, b, e}, {a, e, d}});
       } else {

@@ -34,7 +34,8 @@ constexpr std::array<Triangle, 20> kFaces{{{0, 11, 5}, {0, 5, 1},  {0, 1, 7},   
                                            {3, 9, 4},  {3, 4, 2},  {3, 2, 6},   {3, 6, 8},  {3, 8, 9},
                                            {4, 9, 5},  {2, 4, 11}, {6, 2, 10},  {8, 6, 7},  {9, 8, 1}}};
 
-// Numbers the points: first the corners, then the inner points of the edges as they come up, then those of the faces.
+// Subdivides the faces. The corners are numbered first, the inner points of an edge when a face first needs them, and
+// the inner points of a face as its rows are made.
 class Subdivision {
  public:
   explicit Subdivision(std::uint32_t frequency) : f_(frequency) {
@@ -91,7 +92,7 @@ class Subdivision {
   }
 
   std::uint32_t f_;
-  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges_;  // the first inner point
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> edges_;  // first inner point of each edge
   Icosphere sphere_;
 };
 

@@ -11,11 +11,11 @@ namespace sac::synth {
 
 struct Icosphere {
   std::vector<Eigen::Vector3d> points;  // unit vectors
-  std::vector<Triangle> triangles;      // outward
+  std::vector<Triangle> triangles;      // counterclockwise seen from outside
 };
 
-// The icosahedron with every edge cut into `frequency` >= 1 parts, pushed out to the unit sphere: 10 frequency^2 + 2
-// points.
+// The icosahedron with every edge cut into `frequency` >= 1 parts and all points projected to the unit sphere. It has
+// 10 frequency^2 + 2 points.
 Icosphere MakeIcosphere(std::uint32_t frequency);
 
 }  // namespace sac::synth

@@ -24,7 +24,7 @@ struct Sample {
   double value;
 };
 
-// Spreads the keys of lattice edges, which are packed coordinates.
+// Hashes the keys of lattice edges, which are packed coordinates and would collide without it.
 struct EdgeHash {
   std::size_t operator()(std::uint64_t key) const { return key * 0x9e3779b97f4a7c15 >> 7; }
 };
@@ -32,7 +32,8 @@ struct EdgeHash {
 class Polygonizer {
  public:
   Polygonizer(const Field& field, double spacing) : field_(field), half_(spacing / 2), spacing_(spacing) {
-    // The offset keeps planes of symmetry off the lattice, where the field could be zero on a whole face.
+    // The irrational margins keep the solid's planes of symmetry off the lattice, since the field could be zero on a
+    // whole lattice face there.
     const Eigen::Vector3d margin(1.6180 * spacing, 1.4142 * spacing, 1.7321 * spacing);
     corner_ = field.low - margin;
     const double extent = (field.high - field.low + 2 * margin).maxCoeff();
@@ -48,8 +49,8 @@ class Polygonizer {
   Eigen::Vector3d Position(const LatticePoint& p) const { return corner_ + half_ * Eigen::Vector3d(p[0], p[1], p[2]); }
   Sample At(const LatticePoint& p) const { return {p, field_.value(Position(p))}; }
 
-  // Goes through a block of size^3 cubes, the centre of its first one at `first`; as the field grows by at most 1 per
-  // unit of length, blocks far from the surface are left at once.
+  // Goes through a block of size^3 cubes, the centre of the first of which is `first`. Blocks far from the surface are
+  // skipped as a whole, because the field grows by at most 1 per unit of length.
   void March(const LatticePoint& first, std::int32_t size) {
     const Eigen::Vector3d middle = Position(first) + Eigen::Vector3d::Constant((size - 1) * half_);
     const double reach = (size - 1) * half_ * std::sqrt(3.0) + 1.01 * spacing_;
@@ -81,7 +82,7 @@ class Polygonizer {
   // The corners are in positive orientation: seen from the first one, the others turn clockwise around the outward
   // view.
   void MarchTetrahedron(const std::array<Sample, 4>& t) {
-    std::array<std::size_t, 4> order{};  // inside ones first
+    std::array<std::size_t, 4> order{};  // the corners inside the solid first
     std::size_t inside = 0;
     for (std::size_t i = 0; i < 4; ++i) {
       if (t[i].value < 0) order[inside++] = i;
@@ -117,7 +118,7 @@ class Polygonizer {
     surface_.triangles.push_back({a, b, c});
   }
 
-  // The surface point on a lattice edge, the same for all tetrahedra around it.
+  // The number of the surface point on a lattice edge, which all tetrahedra around the edge share.
   std::uint32_t Cut(const Sample& inside, const Sample& outside) {
     const bool flip = inside.at > outside.at;
     const LatticePoint &low = flip ? outside.at : inside.at, &high = flip ? inside.at : outside.at;
@@ -143,7 +144,7 @@ class Polygonizer {
   std::unordered_map<std::uint64_t, std::uint32_t, EdgeHash> cuts_;
 };
 
-// Moves every point towards the mean of its neighbours and by a step of Newton's method back to the surface.
+// Moves every point towards the mean of its neighbours, then back to the surface by a step of Newton's method.
 void EvenOut(const Field& field, Surface& surface) {
   std::vector<Eigen::Vector3d> sum(surface.points.size());
   std::vector<std::uint32_t> count(surface.points.size());

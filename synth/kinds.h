@@ -7,12 +7,12 @@
 #include "synth/random.h"
 #include "synth/synth.h"
 
-// Internal: one maker for each SynthKind.
+// The functions that make the animation of each SynthKind. They are internal to synth/.
 namespace sac::synth {
 
 using Motion = std::function<Positions(double seconds)>;
 
-// A mesh whose positions are set by motion(0) afterwards.
+// A mesh, whose positions the caller sets to motion(0), and its motion in metres.
 struct Animation {
   Mesh mesh;
   Motion motion;
@@ -28,7 +28,7 @@ inline Vec3f ToFloat(const Eigen::Vector3d& p) {
   return {static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])};
 }
 
-// 0 up to x = 0, 1 from x = 1 on, in between with two continuous derivatives (Perlin's fade curve).
+// Rises from 0 at x <= 0 to 1 at x >= 1 with two continuous derivatives (the fade curve of Perlin 2002).
 inline double Fade(double x) {
   if (x <= 0) return 0;
   if (x >= 1) return 1;

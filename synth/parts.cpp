@@ -12,7 +12,7 @@ namespace sac::synth {
 namespace {
 
 struct Piece {
-  std::size_t begin, end;                    // its points
+  std::size_t begin, end;                    // range of its points
   Eigen::Vector3d home, swing, rate, phase;  // centre = home + swing sin(rate t + phase), per axis
   Eigen::Vector3d spin_axis, nod_axis;
   double spin_rate, nod_rate, nod;
@@ -75,17 +75,18 @@ Positions Fly(const std::vector<Eigen::Vector3d>& points, const std::vector<Piec
 
 }  // namespace
 
-// About 26 vertices a piece, or a hundred pieces if there are too few vertices for that.
+// A piece has about 26 vertices, or fewer where that would give fewer than a hundred pieces.
 Animation MakeParts(std::uint32_t vertices, Random random) {
   const std::array<Solid, 5> solids{Tetrahedron(), Box(), Ball(1), Ball(2), Ball(3)};
   const std::size_t count = PieceCount(vertices);
-  const double room = 0.25 * std::cbrt(static_cast<double>(count));  // half of the room's side, in metres
+  const double room = 0.25 * std::cbrt(static_cast<double>(count));  // half the side of the pieces' cube, metres
   std::vector<Eigen::Vector3d> points;
   std::vector<Piece> pieces;
   Animation animation;
   Mesh& mesh = animation.mesh;
   for (std::size_t i = 0; i < count; ++i) {
-    // A random solid above or below the mean of what is left keeps the mean where it is.
+    // The next solid is chosen at random from those with more, or fewer, vertices than the mean that the remaining
+    // pieces need, so that the total comes near the wanted number.
     const double mean = (vertices - static_cast<double>(points.size())) / static_cast<double>(count - i);
     const auto above =
         std::find_if(solids.begin() + 1, solids.end() - 1, [&](const Solid& s) { return s.points.size() > mean; });

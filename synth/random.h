@@ -20,12 +20,12 @@ class Random {
     return z ^ (z >> 31);
   }
 
-  // In [low, high).
+  // A number that is evenly distributed in [low, high).
   double Uniform(double low, double high) { return low + (high - low) * (static_cast<double>(Next() >> 11) * 0x1p-53); }
 
   double Angle() { return Uniform(0, 2 * std::numbers::pi); }
 
-  // Evenly spread over the unit sphere.
+  // A unit vector that is evenly distributed over the unit sphere.
   Eigen::Vector3d Direction() {
     for (;;) {
       const double x = Uniform(-1, 1), y = Uniform(-1, 1), z = Uniform(-1, 1);

@@ -11,8 +11,8 @@
 namespace sac::synth {
 namespace {
 
-// A zonal harmonic: the Legendre polynomial of the cosine to an axis. Those about all axes span the harmonics of a
-// degree.
+// A zonal harmonic: the Legendre polynomial of the cosine of the angle to an axis. The zonal harmonics about all axes
+// span the spherical harmonics of a degree.
 struct Mode {
   int degree;
   Eigen::Vector3d axis;
@@ -34,7 +34,7 @@ double Legendre(int degree, double x) {
 
 }  // namespace
 
-// At rest, in frame 0, it is the exact sphere: all modes start as sines.
+// Frame 0 is the exact sphere, because all modes are sines of the time.
 Animation MakeSphere(std::uint32_t vertices, Random random) {
   const double frequency = std::round(std::sqrt((vertices - 2.0) / 10));
   Icosphere sphere = MakeIcosphere(static_cast<std::uint32_t>(std::max(frequency, 1.0)));

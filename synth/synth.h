@@ -21,7 +21,7 @@ enum class SynthKind {
   kVase,    // a surface of revolution moving rigidly; has texture coordinates with a seam
 };
 
-// In the order of SynthKind.
+// The names of the kinds, in the order of SynthKind.
 inline constexpr std::array<const char*, 5> kSynthKindNames{"walker", "flag", "sphere", "parts", "vase"};
 
 inline constexpr std::uint32_t kMaxSynthVertices = 20'000'000;
@@ -31,15 +31,16 @@ std::uint32_t MinSynthVertices(SynthKind kind);
 
 struct SynthSettings {
   SynthKind kind = SynthKind::kWalker;
-  // Wanted number. The clip's own number is within 15 % of it from 500 vertices on; below, there are too few shapes to
-  // choose from.
+  // The wanted number of vertices. From 500 on the clip's number is within 15 % of it; below, the shapes are too coarse
+  // to come that near.
   std::uint32_t vertices = 5000;
   std::uint32_t frames = 100;
   std::uint32_t seed = 1;  // varies proportions, phases, paths; equal settings give equal clips
 };
 
-// A clip whose frames are made one at a time: memory does not depend on their number. Random numbers are integers
-// scaled by hand, so that clips differ between machines by no more than the rounding of their mathematical functions.
+// A clip whose frames are computed one at a time, so that memory does not depend on their number. Random numbers do not
+// depend on the standard library, so that the clips of two machines differ only by the rounding of their mathematical
+// functions.
 //
 //   SynthClip clip;
 //   SAC_RETURN_IF_ERROR(SynthClip::Create({.kind = SynthKind::kFlag, .vertices = 10000}, clip));
@@ -49,8 +50,8 @@ class SynthClip : public ClipReader {
   // An empty clip.
   SynthClip() = default;
 
-  // InvalidArgument for fewer than MinSynthVertices or more than kMaxSynthVertices vertices, or no frame; `clip` is
-  // then left as it was.
+  // Makes a clip. Returns kInvalidArgument for fewer than MinSynthVertices() or more than kMaxSynthVertices vertices,
+  // and for no frames; `clip` then stays as it was.
   static Status Create(const SynthSettings& settings, SynthClip& clip);
 
   // Frame 0 with its attributes.
@@ -70,7 +71,8 @@ class SynthClip : public ClipReader {
   std::uint32_t frames() const { return frames_; }
   double fps() const { return kFps; }
 
-  // Positions in metres, y up, of any frame below frames(), in any order. May be called from several threads at once.
+  // The positions of frame `f` < frames(), in metres, with y up. Frames may be asked for in any order and from several
+  // threads at once.
   Positions Frame(std::uint32_t f) const { return motion_(f / double{kFps}); }
 
  private:

@@ -13,8 +13,8 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
-// Radius and height in metres along the outside from the middle of the foot up to the lip and along the inside down
-// again.
+// The profile as pairs of radius and height in metres: from the middle of the foot up the outside to the lip, and down
+// the inside.
 constexpr std::array<std::array<double, 2>, 17> kProfile{{{0, 0},
                                                           {0.09, 0},
                                                           {0.1, 0.015},
@@ -33,7 +33,7 @@ constexpr std::array<std::array<double, 2>, 17> kProfile{{{0, 0},
                                                           {0.105, 0.13},
                                                           {0, 0.08}}};
 
-// Catmull-Rom through the profile's points; x in [0, 1].
+// The radius and height at `x` in [0, 1] along the profile, by a Catmull-Rom spline through its points.
 std::array<double, 2> Profile(double x) {
   const int last = static_cast<int>(kProfile.size()) - 1;
   const int i = std::min(static_cast<int>(x * last), last - 1);
@@ -79,7 +79,8 @@ Path RandomPath(Random& random) {
 
 }  // namespace
 
-// Rings of points between two poles, the middle of the foot and that of the inner ground: a closed surface.
+// The vase is a closed surface of rings of points between two poles: the middle of the foot and the middle of the inner
+// bottom.
 Animation MakeVase(std::uint32_t vertices, Random random) {
   // The profile is about 1.35 m long and the middle circumference 0.63 m.
   const auto around = std::max<std::uint32_t>(6, static_cast<std::uint32_t>(std::lround(std::sqrt(vertices * 0.47))));
@@ -105,7 +106,8 @@ Animation MakeVase(std::uint32_t vertices, Random random) {
     for (std::uint32_t a = 0; a < around; ++a) mesh.uvs.push_back({(a + 0.5f) / around, static_cast<float>(end)});
   }
 
-  // Vertices wrap around; texture coordinates have one column more, and a pole has one for each of its triangles.
+  // The vertices of a ring are closed; its texture coordinates have one column more, which makes the seam. A pole has
+  // one texture coordinate for each of its triangles.
   const auto vertex = [&](std::uint32_t r, std::uint32_t a) { return r * around + a % around; };
   const auto uv = [&](std::uint32_t r, std::uint32_t a) { return r * (around + 1) + a; };
   const std::uint32_t pole_uvs = rings * (around + 1);

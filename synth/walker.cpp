@@ -15,9 +15,9 @@ using Eigen::AngleAxisd;
 using Eigen::Vector3d;
 
 constexpr double kPi = std::numbers::pi;
-constexpr double kStoutness = 0.75;  // least radius of a part of the body in lattice spacings
+constexpr double kStoutness = 0.75;  // smallest radius of a part of the body, in lattice spacings
 
-// What varies from walker to walker.
+// The numbers that vary from walker to walker.
 struct Gait {
   double stride, swing, step_rate, lap_rate, lap_phase, course;  // rad, rad, rad/s, rad/s, rad, m
 };
@@ -30,15 +30,15 @@ struct Pose {
   double heading;
 };
 
-// From a to b the arm turns over the head, back through a full circle until it is over the head from behind, and down
-// again.
+// The angle of an arm, radians, while x goes from `a` to `b`: the arm rises in front until it is over the head, turns
+// back through a full circle until it is over the head from behind, and comes down again.
 double ArmCircle(double x, double a, double b) {
   const double y = (x - a) / (b - a);
   return y > 0 && y < 1 ? -1.05 * kPi * std::sin(2 * kPi * y) * Fade(3 * y) * Fade(3 - 3 * y) : 0;
 }
 
-// A walk along a figure of eight. In every fourth double step the arms begin their circles, the right one after the
-// left.
+// The pose at time `t` (seconds) of a walk along a figure of eight. In every fourth double step the arms begin their
+// circles, first the left, then the right.
 Pose PoseAt(const Gait& gait, double t) {
   Pose pose{};
   const double beat = gait.step_rate * t;
@@ -87,8 +87,9 @@ struct Walker {
   Surface surface;
 };
 
-// The points of a marched surface grow with the inverse square of the spacing, so that a coarse trial tells which to
-// take. The body is made stout enough for the spacing not to lose or tear off its thin parts.
+// Makes the body's surface with about `vertices` points. The number of points grows with the inverse square of the
+// lattice spacing, so a coarse trial shows which spacing is needed. The body is made thick enough that no thin part is
+// lost or torn off at that spacing.
 Walker Build(std::uint32_t vertices, const Random& random) {
   Walker walker;
   double spacing = vertices < 5000 ? 0.03 : 0.02;

@@ -12,14 +12,15 @@ namespace {
 
 using Eigen::Vector3d;
 
-// Capsules closer than about this melt into each other, in metres.
+// Capsules that are closer to each other than about this distance (metres) blend.
 constexpr double kBlend = 0.014;
-// Farther than that behind the closest capsule, another adds less than rounding.
+// A capsule that is farther away than the closest one by this distance changes the sum by less than rounding.
 constexpr double kNegligible = 40 * kBlend;
 
 constexpr std::size_t kMostCapsules = 24;
 
-// Capsules taper by less than a quarter of their length, so that a distance grows by no more than this.
+// The radius of a capsule changes by less than a quarter of its length, so its distance grows by at most this factor
+// per unit of length.
 constexpr double kSteepest = 1.04;
 
 }  // namespace
@@ -76,7 +77,7 @@ WalkerBody::Nearest WalkerBody::To(const Capsule& capsule, const Vector3d& p) {
           norm > 0 ? Vector3d(d / norm) : d};
 }
 
-// -k log(sum exp(-distance / k)): the smallest distance, rounded off where several are alike.
+// The smooth minimum of the distances to the capsules: -k log(sum exp(-distance / k)).
 double WalkerBody::Value(const Vector3d& p) const {
   std::array<double, kMostCapsules> distance;
   double least = std::numeric_limits<double>::infinity(), sum = 0;
@@ -137,7 +138,7 @@ Skin WalkerBody::SkinAt(const Vector3d& p) const {
     return skin;
   }
 
-  // A limb begins where it is as close as the rest of the body and has its full weight where it is clearly closer.
+  // The weight of a limb is 0 where the rest of the body is as close, and 1 where the limb is clearly closer.
   double others = std::numeric_limits<double>::infinity();
   for (int i = 0; i <= kLimbs; ++i) {
     if (i != limb) others = std::min(others, distance[i]);

@@ -13,10 +13,11 @@ namespace sac::synth {
 inline constexpr int kLimbs = 4;   // left arm, right arm, left leg, right leg; left is at positive x
 inline constexpr int kJoints = 3;  // shoulder, elbow, wrist or hip, knee, ankle
 
-// How the joints move one point of the body. A joint of angle a turns the point by weight * a, so that the surface
-// bends evenly around a joint and neither tears nor collapses however far the joint turns.
+// The weights by which the joints move one point of the body. A joint that turns by an angle turns the point by the
+// angle times the point's weight. The surface then bends evenly around the joint, and it neither tears nor collapses
+// however far the joint turns.
 struct Skin {
-  int limb = -1;  // -1: none
+  int limb = -1;  // the limb that the point belongs to; -1: none
   std::array<double, kJoints> limb_weight{};
   double spine = 0, head = 0;
 };
@@ -24,10 +25,10 @@ struct Skin {
 // A standing figure of blended rounded capsules, about 1.75 m high, facing positive z, arms held out.
 class WalkerBody {
  public:
-  // No part is thinner than twice `least_radius`, in metres.
+  // No part of the body has a radius below `least_radius` (metres).
   WalkerBody(Random random, double least_radius);
 
-  // The body's surface; it refers to this body.
+  // The field whose zero set is the body's surface. It refers to this object.
   Field field() const;
 
   Skin SkinAt(const Eigen::Vector3d& p) const;
@@ -44,7 +45,7 @@ class WalkerBody {
   };
   struct Nearest {
     double distance;           // signed
-    Eigen::Vector3d gradient;  // nearly: the change of the radius is left out
+    Eigen::Vector3d gradient;  // approximate, without the change of the radius along the segment
   };
   static Nearest To(const Capsule& capsule, const Eigen::Vector3d& p);
   double Value(const Eigen::Vector3d& p) const;

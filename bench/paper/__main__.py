@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Repeats what "Spectral animation compression" (Wang et al., JCST 30(3), 2015) measures, with the method as published
-(bench/peers/sac2015.cpp), and writes a page for each of its figures: docs/paper.
+"""Repeats the measurements of "Spectral animation compression" (Wang et al., JCST 30(3), 2015) with the method as
+published (bench/peers/sac2015.cpp), and writes a page of docs/paper for each of the paper's figures.
 
 DATA holds NAME.obj (the first frame with its triangles) and NAME.pc2; models that are not there are left out. What was
 measured stays in the work directory, so that a second run measures only what is new: another program, clip or setting.

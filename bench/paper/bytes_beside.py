@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""How many times the bytes of sac the published method takes, at its own operating points."""
+"""Compares the bytes of the published method, at its own operating points, with those of sac at the same errors."""
 from page import g
 
 CLAIMED, FEWER = (12, 14, 16, 18), (8, 10)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figures 7 (a rigid vase) and 8 (cloth): clips of one kind of motion."""
+"""Figures 7 (a rigid vase) and 8 (cloth), whose clips have one kind of motion each."""
 from measure import good, times_the_bits
 from page import curve, g, scales
 
 
 def first(result):
-    """-> bits a vertex and frame of the first frame, its connectivity included"""
+    """-> the bytes of the first frame with its connectivity, as bits per vertex and frame of the clip"""
     return 8 * result["i_frame"] / result["vertices"] / result["frames"]
 
 
@@ -96,7 +96,7 @@ def figure_8(lab, page):
     }
 
     def beside(title, error):
-        """-> how many times the bits of the published method, by 18 bits and by 8, trajectory PCA takes; in words"""
+        """-> a sentence: the ratio of the bits of trajectory PCA to those of the published method with 18 and 8 bits"""
         words, better = [], 0
         for bits, rows in ((18, published[title]), (8, short[title])):
             ratio = times_the_bits(list(rows.values()), list(pca[title].values()), error)

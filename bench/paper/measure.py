@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the codecs as programs that get nothing but files, measures what they decode, and keeps what was measured.
+"""Runs the codecs as programs that get nothing but files, measures the decoded clips, and keeps the results.
 
-A result is a dict: bytes, bpvf (bits a vertex and frame, all bytes counted), kg (percent), sted with its parts sted_s
-and sted_t, max_error (model units), vertices, frames; of the published method also `encode` and `decode`, what its
-program reports of steps and parts. A codec that fails gives {"error": its message}.
+A result is a dict: bytes, bpvf (bits per vertex and frame, all bytes counted), kg (percent), sted with its parts sted_s
+and sted_t, max_error (model units), vertices, frames. Results of the published method also have `encode` and `decode`,
+its program's reports on steps and parts. A codec that fails gives {"error": its message}.
 """
 import collections
 import functools
@@ -19,7 +19,7 @@ Clip = collections.namedtuple("Clip", "name mesh cache")
 
 
 class Failed(Exception):
-    """A codec ended with an error; the message is what it said."""
+    """A codec ended with an error, whose message this is."""
 
 
 def run(*command):
@@ -34,13 +34,13 @@ def run(*command):
 
 @functools.lru_cache(maxsize=None)
 def digest(path):
-    """-> of a file's bytes"""
+    """-> the SHA-256 of a file's bytes, in hexadecimal"""
     with open(path, "rb") as f:
         return hashlib.sha256(f.read()).hexdigest()
 
 
 def frames_of(path):
-    """-> frames x vertices x 3 of a PC2 file"""
+    """-> the positions of a PC2 file, an array of frames x vertices x 3"""
     with open(path, "rb") as f:
         head = np.frombuffer(f.read(32)[16:], "<i4")
         return np.frombuffer(f.read(), "<f4").reshape(head[3], head[0], 3).astype(float)
@@ -54,7 +54,7 @@ def error_by_frame(original, decoded):
 
 
 def histogram(report, bits, bins=128):
-    """Replaces the counts of single levels in an encoder's report, which are many, by what the pages need of them."""
+    """Replaces the counts of single levels in an encoder's report by a histogram for each channel, in `bins` bins."""
     width = 2**bits / bins
     channels, all_levels = [], collections.Counter()
     for channel in report.pop("levels"):
@@ -73,7 +73,7 @@ class Laboratory:
         os.makedirs(work, exist_ok=True)
 
     def clip(self, name):
-        """-> a clip of the data; None where it is not there"""
+        """-> the clip `name` of the data, None when it does not exist"""
         clip = Clip(name, *(os.path.join(self.data, name + e) for e in (".obj", ".pc2")))
         return clip if os.path.exists(clip.mesh) and os.path.exists(clip.cache) else None
 
@@ -84,14 +84,14 @@ class Laboratory:
         return clip
 
     def peer(self, name, clip, setting, by_frame=False):
-        """A peer at a setting; `by_frame` adds the error of each frame."""
+        """-> the result of a peer at a setting; `by_frame` adds the KG error of each frame"""
         program = os.path.join(self.peers, "sac-peer-" + name)
         return self._kept(
             (program,), clip, (setting, by_frame), lambda work: self._peer(program, clip, setting, by_frame, work)
         )
 
     def sac(self, clip, *options):
-        """sac itself with options of sac encode; also what it says of its parts, as `said`."""
+        """-> the result of sac itself with options of `sac encode`; `said` is its own report on the stream"""
         return self._kept((), clip, options, lambda work: self._sac(clip, options, work))
 
     def _kept(self, programs, clip, options, measure):
@@ -159,14 +159,14 @@ class Laboratory:
 
 
 def good(results):
-    """-> the results, by key, that are no failure"""
+    """-> the results, by key, without those that failed"""
     return {key: result for key, result in results.items() if "error" not in result}
 
 
 def times_the_bits(ours, theirs, error):
-    """-> how many times the bits of `ours` (results) `theirs` take at equal `error`, in the mean of logarithms over
-    the errors that both reach; None without any. Log bits are linear in log error between points; points that another
-    of the same codec beats in both are left out.
+    """-> the ratio of the bits of `theirs` to those of `ours` (both results) at equal `error`, None when they reach no
+    error in common. It is the geometric mean over the errors that both reach. Between points, log bits are linear in
+    log error; points that another point of the same codec beats in both are left out.
     """
 
     def curve(results):

@@ -26,7 +26,7 @@ DECODING = {
 
 
 def at(lab, setting):
-    """-> {model: result} of the models that are there and have one"""
+    """-> {model: result} for the models whose clip exists and whose run did not fail"""
     clips = {name: lab.clip(name) for name in MODELS}
     return good({name: lab.peer("sac2015", clip, setting) for name, clip in clips.items() if clip})
 
@@ -195,7 +195,7 @@ that. Each channel has its zero at another place of its range, hence the peaks s
 
 
 def within_a_tenth(channels):
-    """-> the share of values in the fullest tenth of each channel's histogram"""
+    """-> the share of values that lie in the fullest tenth of the range of their channel's histogram"""
     width = round(len(channels[0]) / 10)
     return sum(max(sum(c[i : i + width]) for i in range(len(c) - width + 1)) for c in channels) / sum(
         map(sum, channels)

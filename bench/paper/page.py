@@ -9,7 +9,7 @@ matplotlib.use("svg")
 import matplotlib.pyplot as plt  # noqa: E402
 from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator  # noqa: E402
 
-# Text stays text, and equal figures give equal bytes.
+# Text is written as text, not as outlines, and equal figures give files of equal bytes.
 plt.rcParams.update(
     {
         "svg.fonttype": "none",
@@ -26,7 +26,7 @@ plt.rcParams.update(
 
 
 def g(value, digits=4):
-    """-> a figure in so many digits, as tables show it"""
+    """-> a value as tables show it, with a given number of digits"""
     if value is None:
         return "-"
     if isinstance(value, (int, str)):
@@ -36,21 +36,22 @@ def g(value, digits=4):
 
 
 class Page:
-    """A page of docs/paper: what the paper claims, whether it held, figures."""
+    """A page of docs/paper: a claim of the paper, whether it held, and the figures."""
 
     def __init__(self, directory, pictures, name, title):
         self.directory, self.pictures, self.name, self.title, self.verdict = directory, pictures, name, title, ""
         self.blocks = [f"# {title}"]
 
     def text(self, text):
-        """Paragraphs, with empty lines between."""
+        """Adds paragraphs, which empty lines separate in `text`."""
         self.blocks += [textwrap.fill(" ".join(paragraph.split()), 120) for paragraph in text.strip().split("\n\n")]
 
     def heading(self, text):
         self.blocks.append(f"## {text}")
 
     def claim(self, text, checks):
-        """`checks`: (a sentence, of how many cases it is so as a share or a bool, the figures that say it)."""
+        """Adds a claim and its checks. A check is (a sentence, whether it is true as a bool or as the share of cases,
+        the figures that show it)."""
         so = [float(check[1]) for check in checks]
         self.verdict = "held" if min(so) == 1 else "held in part" if max(so) > 0 else "did not hold"
         self.text(f"**The claim:** {text}")
@@ -62,14 +63,14 @@ class Page:
         )
 
     def table(self, head, rows, align=None):
-        """`align`: l or r for each column; the first is left of itself, others right."""
+        """Adds a table. `align` has l or r for each column; by default the first is aligned left, the others right."""
         align = align or "l" + "r" * (len(head) - 1)
         lines = [head, ["---" if a == "l" else "--:" for a in align], *([g(c) for c in row] for row in rows)]
         self.blocks.append("\n".join("| " + " | ".join(line) + " |" for line in lines))
 
     def plot(self, draw, panels, caption, height=3.1):
-        """`draw` gets `panels` axes. Draws the picture NAME.svg, NAME-2.svg the second one of a page, and names it in
-        the page: pictures are large as text and are not kept with the pages."""
+        """Draws a picture and names it in the page. `draw` gets `panels` axes. The file is NAME.svg for the first
+        picture of a page, NAME-2.svg for the second. Pictures are large and not kept with the pages."""
         before = sum(".svg`" in block for block in self.blocks)
         file = f"{self.name}-{before + 1}.svg" if before else f"{self.name}.svg"
         figure, axes = plt.subplots(1, panels, figsize=(9, height), squeeze=False)
@@ -90,7 +91,7 @@ class Page:
 
 
 def curve(axes, points, x, y, label, style="o-", **more):
-    """Draws results or (x, y) pairs."""
+    """Draws a curve through points, which are results or (x, y) pairs."""
     pairs = sorted((p[x], p[y]) for p in points)
     axes.plot(*zip(*pairs), style, label=label, markersize=3.5, linewidth=1.2, **more)
 

@@ -11,18 +11,18 @@
 
 namespace sac::bench {
 
-// A peer that codes nothing but positions, as an array of frames by vertices. Triangles go before them
+// A peer that codes only positions, as an array of frames by vertices. The triangles are coded before them by Draco
 // (connectivity.h).
 struct ArrayPeer {
   std::string title, version;
-  std::string parameter;              // what a setting, a number, is
-  std::vector<std::string> settings;  // from small to near
+  std::string parameter;              // the meaning of a setting, which is a number
+  std::vector<std::string> settings;  // from the smallest streams to the most exact
   Status (*encode)(const std::vector<Positions>& frames, double setting, ByteWriter& out);
-  // Fills `frames`, which have their number and sizes.
+  // Fills `frames`, which already have the right number and sizes.
   Status (*decode)(ByteReader& in, std::vector<Positions>& frames);
 };
 
-// The body of main.
+// Runs `peer` as a program: the whole of main().
 int RunArrayPeer(int argc, char** argv, const ArrayPeer& peer);
 
 }  // namespace sac::bench

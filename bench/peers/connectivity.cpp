@@ -43,7 +43,7 @@ Status EncodeWithDraco(std::span<const Triangle> triangles, const Positions& pos
   }
   draco::ExpertEncoder encoder(mesh);
   encoder.SetEncodingMethod(draco::MESH_EDGEBREAKER_ENCODING);
-  encoder.SetSpeedOptions(0, 0);  // draco_encoder -cl 10
+  encoder.SetSpeedOptions(0, 0);  // strongest compression, as of draco_encoder -cl 10
   if (bits > 0) encoder.SetAttributeQuantization(0, bits);
   draco::EncoderBuffer buffer;
   if (const draco::Status status = encoder.EncodeToBuffer(&buffer); !status.ok()) {
@@ -74,7 +74,8 @@ Status DecodeWithDraco(std::span<const std::uint8_t> bytes, std::vector<Triangle
 }
 
 Status OrderOfDraco(std::span<const Triangle> triangles, std::size_t vertices, std::vector<std::uint32_t>& order) {
-  // Their numbers as positions: Draco's order does not depend on positions. Floats hold them exactly in two parts.
+  // The numbers of the vertices are coded as positions, since Draco's order does not depend on positions. They are
+  // split into two parts, which floats hold exactly.
   constexpr std::uint32_t kPart = 1 << 16;
   Positions numbers(vertices);
   for (std::uint32_t v = 0; v < vertices; ++v) {
@@ -94,7 +95,7 @@ Status OrderOfDraco(std::span<const Triangle> triangles, std::size_t vertices, s
 Status WriteConnectivity(const Clip& clip, ByteWriter& out, Connectivity& connectivity) {
   std::vector<std::uint8_t> bytes;
   Positions ignored;
-  // All vertices in one place: their positions cost a few bytes.
+  // All vertices are at one position, so that positions cost only a few bytes.
   SAC_RETURN_IF_ERROR(EncodeWithDraco(clip.mesh.triangles, Positions(clip.vertices()), 0, bytes));
   SAC_RETURN_IF_ERROR(DecodeWithDraco(bytes, connectivity.triangles, ignored));
   SAC_RETURN_IF_ERROR(OrderOfDraco(clip.mesh.triangles, clip.vertices(), connectivity.order));

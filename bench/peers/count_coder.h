@@ -11,10 +11,11 @@
 
 namespace sac::bench {
 
-// Arithmetic coding of order 0: how often each symbol appears is sent first, then the symbols by these frequencies.
+// Arithmetic coding of order 0. The number of appearances of each symbol is sent first, then the symbols are coded with
+// these frequencies.
 struct SymbolCounts {
-  std::vector<std::uint32_t> symbols;  // that appear, ascending
-  std::vector<std::uint64_t> before;   // appearances of those before each, and of all at the end
+  std::vector<std::uint32_t> symbols;  // the symbols that appear, ascending
+  std::vector<std::uint64_t> before;   // for each symbol the appearances of all before it; last, of all symbols
 };
 
 inline SymbolCounts CountSymbols(const std::vector<std::uint32_t>& values) {
@@ -52,8 +53,8 @@ void CodeCounts(Coder& coder, SymbolCounts& table) {
   }
 }
 
-// By halves of the table, the upper half having the share of its appearances: what arithmetic coding of the symbol as a
-// whole would take, but for the rounding of shares to 1/65536.
+// Codes a symbol by halving the table again and again. The probability of the upper half is its share of the
+// appearances, so this takes as many bits as coding the symbol at once, but for the rounding of shares to 1/65536.
 template <class Coder>
 void CodeSymbol(Coder& coder, const SymbolCounts& table, std::uint32_t& value) {
   std::size_t low = 0, high = table.symbols.size();

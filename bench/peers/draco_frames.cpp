@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Draco's mesh codec, frame by frame: every frame a file of its own, connectivity and all.
+// Draco's mesh codec, frame by frame. Every frame is coded as a mesh of its own, with its connectivity.
 #include <draco/core/draco_version.h>
 
 #include "bench/peers/connectivity.h"

@@ -13,13 +13,13 @@
 
 namespace sac::bench {
 
-// Floats as they are, each by its difference to the vertex before as ordered integers: how many bits that has,
-// adaptively, and the bits.
+// Codes floats without loss. Each coordinate is the difference to the vertex before, both taken as ordered integers.
+// The number of bits of the difference is coded adaptively, then the bits.
 template <class Coder>
 void CodeFloats(Coder& coder, std::vector<Vec3f>& values) {
   std::array<std::array<BitModel, 33>, 3> models;
   std::array<std::uint32_t, 3> last{};
-  // Ascending integers for ascending floats, and back.
+  // Maps the bits of ascending floats to ascending integers, and back.
   const auto fold = [](std::uint32_t x) { return x >> 31 != 0 ? ~x : x | 0x80000000u; };
   const auto unfold = [](std::uint32_t x) { return x >> 31 != 0 ? x & 0x7fffffffu : ~x; };
   for (Vec3f& value : values) {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// fpzip on each coordinate as an array of vertices by frames, with so many bits of each float kept.
+// fpzip on each coordinate as an array of vertices by frames. The setting is the number of bits of each float that are
+// kept.
 #include <fpzip.h>
 
 #include <algorithm>
@@ -9,7 +10,7 @@
 namespace sac::bench {
 namespace {
 
-constexpr std::size_t kMargin = 1024;  // for what cannot be compressed
+constexpr std::size_t kMargin = 1024;  // bytes of room for data that cannot be compressed
 
 void Describe(FPZ& fpz, int bits, std::size_t vertices, std::size_t frames) {
   fpz.type = FPZIP_TYPE_FLOAT;

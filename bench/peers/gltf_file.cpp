@@ -26,7 +26,7 @@ Status WriteFile(const std::string& path, const void* bytes, std::size_t size) {
   return file.Commit();
 }
 
-// The buffer with its views and accessors, one each.
+// The buffer with its views and accessors; each accessor has a view of its own.
 class Buffer {
  public:
   explicit Buffer(json& gltf) : gltf_(gltf) {}
@@ -41,7 +41,7 @@ class Buffer {
     return gltf_["accessors"].size() - 1;
   }
 
-  // glTF wants the bounds of positions.
+  // glTF requires the bounds of positions.
   std::size_t AddPositions(const Positions& positions) {
     const std::size_t index = Add(positions.data(), positions.size() * sizeof(Vec3f), positions.size(), kFloat, "VEC3");
     const Box box = BoundingBox(positions);
@@ -113,7 +113,7 @@ double Component(const std::uint8_t* bytes, int type, bool normalized) {
 
 std::size_t SizeOf(int type) { return type <= 5121 ? 1 : type <= 5123 ? 2 : 4; }
 
-// meshoptimizer's part of EXT_meshopt_compression.
+// Decompresses a buffer view of EXT_meshopt_compression with meshoptimizer.
 bool Decompress(const json& extension, std::span<const std::uint8_t> code, std::vector<std::uint8_t>& bytes) {
   const std::size_t count = extension.at("count"), stride = extension.at("byteStride");
   const std::string mode = extension.at("mode"), filter = extension.value("filter", "NONE");
@@ -181,7 +181,7 @@ Status GlbFile::Values(std::size_t accessor, std::size_t components, std::vector
   const json& a = json_.at("accessors").at(accessor);
   const std::size_t count = a.at("count");
   values.assign(count * components, 0);
-  if (!a.contains("bufferView")) return Status::Ok();  // all zero
+  if (!a.contains("bufferView")) return Status::Ok();  // an accessor without a view is all zero
   std::vector<std::uint8_t> bytes;
   std::size_t stride = 0;
   SAC_RETURN_IF_ERROR(BufferView(a.at("bufferView"), bytes, stride));
@@ -212,7 +212,7 @@ Status GlbFile::Frames(std::vector<Positions>& frames) const {
     const json& sampler = json_["animations"].at(0).at("samplers").at(0);
     SAC_RETURN_IF_ERROR(Values(sampler.at("output"), 1, weights));
   }
-  // gltfpack puts what undoes the quantization into the mesh's node.
+  // gltfpack puts the transform that undoes the quantization into the mesh's node.
   double scale[3] = {1, 1, 1}, translation[3] = {0, 0, 0};
   for (const json& node : json_.at("nodes")) {
     for (std::size_t a = 0; a < 3; ++a) {

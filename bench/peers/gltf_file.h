@@ -13,9 +13,9 @@
 
 namespace sac::bench {
 
-// Writes PATH.gltf and PATH.bin: the first frame as a mesh, every other one as a morph target, and an animation that
-// shows them one after the other. `ids` instead: the first frame alone, with each vertex's number as texture
-// coordinates (v mod 4096, v / 4096).
+// Writes PATH.gltf and PATH.bin: the first frame as a mesh, every other frame as a morph target, and an animation that
+// shows them one after the other. With `ids` it writes the first frame alone, with the number v of each vertex as
+// texture coordinates (v mod 4096, v / 4096).
 Status WriteGltf(const Clip& clip, bool ids, const std::string& path);
 
 // A binary glTF file with one mesh, as gltfpack makes it: quantized, EXT_meshopt_compression.
@@ -23,11 +23,11 @@ class GlbFile {
  public:
   Status Open(std::span<const std::uint8_t> bytes);
 
-  // Each frame of the animation: the mesh with its morph targets at the weights of each key; of a file without an
-  // animation the mesh alone.
+  // The frames of the animation: for each key the mesh with its morph targets at the key's weights. A file without an
+  // animation has one frame, the mesh.
   Status Frames(std::vector<Positions>& frames) const;
   Status Triangles(std::vector<Triangle>& triangles) const;
-  // The first texture coordinates: pairs of numbers.
+  // The first set of texture coordinates, as pairs of numbers.
   Status TextureCoordinates(std::vector<double>& values) const;
 
  private:

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// glTF with a morph target a frame, by gltfpack with its strongest compression (EXT_meshopt_compression). gltfpack is a
-// program of the npm package of that name; `npm ci` in this directory installs the version that package.json names.
-// Which of its vertices is which, it does not say: a second run, on the first frame with numbers, tells.
+// glTF with a morph target for each frame, by gltfpack with its strongest compression (EXT_meshopt_compression).
+// gltfpack is a program of the npm package of that name; `npm ci` in this directory installs the version that
+// package.json names. gltfpack reorders vertices without saying how. The order is found by a second run on the first
+// frame, whose texture coordinates are the numbers of the vertices.
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
@@ -19,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Where npm puts it, or in the path.
+// Looks for gltfpack in the directory where npm installs it, then in PATH.
 std::string FindGltfpack() {
   std::istringstream path(std::string(SAC_GLTFPACK_DIRECTORY ":") + (std::getenv("PATH") ? std::getenv("PATH") : ""));
   for (std::string directory; std::getline(path, directory, ':');) {
@@ -35,7 +36,7 @@ Status Run(const Clip& clip, bool ids, const std::vector<std::string>& options, 
   if (directory.path().empty()) return Status::IoError("no temporary directory");
   const std::string path = directory.Path("clip"), packed = directory.Path("packed.glb");
   SAC_RETURN_IF_ERROR(WriteGltf(clip, ids, path));
-  // Keys stay as they are, so that frames come back at their times.
+  // With -af 0 gltfpack does not resample the animation, so that frames come back at their times.
   std::vector<std::string> command{FindGltfpack(), "-i", path + ".gltf", "-o", packed, "-cc", "-af", "0"};
   command.insert(command.end(), options.begin(), options.end());
   ProcessUsage usage;
@@ -46,7 +47,7 @@ Status Run(const Clip& clip, bool ids, const std::vector<std::string>& options, 
   return bytes.empty() ? Status::IoError("gltfpack wrote nothing") : Status::Ok();
 }
 
-// The input's vertices in gltfpack's order.
+// Finds the input's vertices in the order of gltfpack.
 Status FindOrder(const Clip& clip, std::vector<std::uint32_t>& order) {
   std::vector<std::uint8_t> bytes;
   SAC_RETURN_IF_ERROR(Run(clip, true, {"-noq", "-kv"}, bytes));
@@ -76,7 +77,8 @@ Status Encode(const Clip& clip, const std::string& setting, PeerStream& stream) 
   SAC_RETURN_IF_ERROR(FindOrder(clip, stream.order));
   Clip decoded;
   SAC_RETURN_IF_ERROR(Decode(stream.bytes, decoded));
-  // Vertices that are alike in all frames become one, but keep their numbers apart.
+  // gltfpack merges vertices that are equal in all frames. In the second run they differ by their numbers and stay
+  // apart, so that the order cannot be found.
   if (decoded.vertices() != stream.order.size()) return Status::Unsupported("gltfpack has merged vertices");
   return Status::Ok();
 }

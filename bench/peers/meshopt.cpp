@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// meshoptimizer's vertex codec on differences from frame to frame, then zstd. Coordinates are integers of `bits` bits
+// meshoptimizer's vertex codec on differences from frame to frame, then zstd. Coordinates are quantized to `bits` bits
 // of the clip's largest extent.
 #include <meshoptimizer.h>
 #include <zstd.h>
@@ -13,7 +13,8 @@
 namespace sac::bench {
 namespace {
 
-using Packed = std::array<std::uint16_t, 4>;  // three coordinates; the codec takes multiples of four bytes
+using Packed =
+    std::array<std::uint16_t, 4>;  // three coordinates and padding, since the codec takes multiples of four bytes
 
 Status Encode(const std::vector<Positions>& frames, double bits, ByteWriter& out) {
   Vec3f low = frames[0][0], high = low;

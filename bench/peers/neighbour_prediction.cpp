@@ -16,7 +16,8 @@ NeighbourPrediction::NeighbourPrediction(const std::vector<Triangle>& triangles,
   for (std::uint32_t i = 0; i < order_.size(); ++i) rank_[order_[i]] = i;
 }
 
-// Breadth first, so that every vertex but the first few has a complete triangle beside it.
+// Orders the vertices breadth first, so that every vertex but the first few has a triangle of earlier vertices beside
+// it.
 void NeighbourPrediction::Walk() {
   std::vector<bool> seen(around_.size());
   for (std::uint32_t start = 0; start < around_.size(); ++start) {

@@ -16,10 +16,10 @@ class NeighbourPrediction {
  public:
   NeighbourPrediction(const std::vector<Triangle>& triangles, std::size_t vertices, std::size_t channels);
 
-  // The i-th vertex of the order.
+  // The i-th vertex of that order.
   std::uint32_t vertex(std::size_t i) const { return order_[i]; }
 
-  // For the i-th vertex, when those before it are set.
+  // The prediction for the i-th vertex. The values of the vertices before it must be set.
   const std::vector<int>& Predict(std::size_t i);
   void Set(std::size_t i, const std::vector<int>& value);
 
@@ -27,9 +27,9 @@ class NeighbourPrediction {
   void Walk();
 
   const std::vector<Triangle>& triangles_;
-  std::vector<std::vector<std::uint32_t>> around_;  // triangles of each vertex
+  std::vector<std::vector<std::uint32_t>> around_;  // the triangles around each vertex
   std::vector<std::uint32_t> order_;
-  std::vector<std::uint32_t> rank_;  // of each vertex in the order
+  std::vector<std::uint32_t> rank_;  // the place of each vertex in the order
   std::vector<std::vector<int>> values_;
   std::vector<int> predicted_;
 };

@@ -3,9 +3,10 @@
 // dynamic mesh compression", 3DTV 2007; "COBRA: compression of the basis for PCA represented animations", CGF 28(6),
 // 2009).
 //
-// A vertex's path over all frames is a vector of 3F coordinates; the paths' mean and K principal directions are sent,
-// and for each vertex K coefficients, predicted from decoded neighbours by parallelograms. Coefficients, basis and mean
-// are quantized and coded by an adaptive range coder, one set of models a component.
+// The path of a vertex over all F frames is a vector of 3F coordinates. The mean of the paths and their K principal
+// directions are sent, and for each vertex K coefficients, predicted by parallelograms from decoded neighbours.
+// Coefficients, directions and mean are quantized and coded by an adaptive range coder with models of its own for each
+// of the K components.
 #include <Eigen/Core>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
@@ -26,16 +27,16 @@ namespace {
 using Eigen::MatrixXd;
 using Eigen::VectorXd;
 
-// What is sent, as integers; the decoder fills it in.
+// The contents of a stream as integers. The decoder fills it in.
 struct Code {
   std::uint32_t frames = 0, components = 0;
-  float step = 0;                          // of coefficients, model units
-  std::vector<float> basis_steps;          // of each direction's entries
-  std::vector<std::vector<int>> rows;      // mean, then each direction: 3F
-  std::vector<std::vector<int>> vertices;  // each vertex's residual: K
+  float step = 0;                          // step of the coefficients, model units
+  std::vector<float> basis_steps;          // step of the entries of each direction
+  std::vector<std::vector<int>> rows;      // the mean, then each direction; 3F integers each
+  std::vector<std::vector<int>> vertices;  // the residuals of each vertex; K integers each
 };
 
-// Entries of a mean or a direction move smoothly: predicted along a line through the two frames before.
+// Predicts an entry of the mean or a direction, which move smoothly, on the line through the two frames before.
 int Extrapolate(const std::vector<int>& row, std::size_t i) {
   return i >= 6 ? 2 * row[i - 3] - row[i - 6] : i >= 3 ? row[i - 3] : 0;
 }
@@ -53,7 +54,7 @@ void CodeRows(Coder& coder, Code& code) {
   }
 }
 
-// Magnitudes are like those of the vertex before: a few contexts by their size.
+// Codes the residuals. The context is the size of the magnitudes of the vertex before, which are likely to be similar.
 template <class Coder>
 void CodeVertices(Coder& coder, Code& code) {
   constexpr std::size_t kActivities = 6;
@@ -68,7 +69,8 @@ void CodeVertices(Coder& coder, Code& code) {
   }
 }
 
-// All entries of the mean together err a quarter as much as a vertex's coefficients.
+// The step of the mean, chosen such that the squared error of all its entries together is a quarter of that of a
+// vertex's coefficients.
 float MeanStep(const Code& code) {
   return 0.5f * code.step * std::sqrt(static_cast<float>(code.components) / static_cast<float>(3 * code.frames));
 }
@@ -90,7 +92,7 @@ std::vector<int> Quantize(const VectorXd& values, float step) {
   return out;
 }
 
-// Vertices' paths in the order of coding: 3F x n.
+// The paths of the vertices as columns, in the order in which they are coded: 3F x n.
 MatrixXd PathsOf(const Clip& clip, const std::vector<std::uint32_t>& order) {
   MatrixXd paths(3 * clip.frames.size(), order.size());
   for (std::size_t f = 0; f < clip.frames.size(); ++f) {
@@ -104,9 +106,9 @@ MatrixXd PathsOf(const Clip& clip, const std::vector<std::uint32_t>& order) {
   return paths;
 }
 
-// Picks the directions, and steps whose errors are in proportion to what the directions left out: coefficients as much
-// (for a coarseness of 1), the basis a quarter of that. On a captured human 0.5 to 1 are on one curve of KG, 2 is above
-// it.
+// Chooses the directions and the steps. The squared error by quantized coefficients is in proportion to the energy that
+// the directions leave out, and equal to it for a coarseness of 1; that of the quantized directions is a quarter of it.
+// On a captured human, coarseness 0.5 to 1 give the same curve of rate and KG, and 2 gives a worse one.
 Code QuantizeBasis(const MatrixXd& centred, const VectorXd& mean, std::uint32_t components) {
   const Eigen::Index n = centred.cols(), dimension = centred.rows();
   const Eigen::SelfAdjointEigenSolver<MatrixXd> solver(centred * centred.transpose());
@@ -139,7 +141,7 @@ Status Encode(const Clip& clip, const std::string& setting, PeerStream& stream) 
   const VectorXd mean = paths.rowwise().mean();
   Code code = QuantizeBasis(paths.colwise() - mean, mean, static_cast<std::uint32_t>(wanted));
 
-  // Coefficients of the basis that the decoder has, which is not quite orthogonal any more.
+  // The coefficients are computed for the decoder's basis, whose quantized directions are not quite orthogonal.
   const MatrixXd rows = Dequantize(code), basis = rows.rightCols(code.components);
   const MatrixXd coefficients =
       (basis.transpose() * basis).ldlt().solve(basis.transpose() * (paths.colwise() - rows.col(0)));

@@ -17,8 +17,9 @@
 namespace sac::bench {
 namespace {
 
-// encode MESH CLIP -o STREAM --order-map MAP --setting SETTING; decode STREAM -o CLIP --order-map MAP; and after either
-// --report FILE
+// The arguments of
+//   encode MESH CLIP -o STREAM --order-map MAP --setting SETTING [--report FILE]
+//   decode STREAM -o CLIP --order-map MAP [--report FILE]
 struct Arguments {
   std::string mesh, clip, stream, map, setting, report;
 };

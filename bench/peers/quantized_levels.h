@@ -12,8 +12,8 @@
 
 namespace sac::bench {
 
-// Coefficients of so many channels between a least and a greatest value of their channel, as integers of so many bits
-// each (Wang et al. 2015).
+// Quantizes the coefficients of each of kChannels channels uniformly between the least and the greatest value of the
+// channel, to integers of `bits` bits (Wang et al. 2015).
 struct Quantizer {
   static constexpr std::size_t kChannels = 9;
 
@@ -33,7 +33,8 @@ struct Quantizer {
   }
 };
 
-// Levels by the counts of all of them, which a decoder has before, or where there are no counts by their bits.
+// Codes levels with the frequencies `counts`, which a decoder must have before. When `counts` is null, each level is
+// coded as `bits` bits.
 template <class Coder>
 void CodeLevels(Coder& coder, const SymbolCounts* counts, std::uint32_t bits, std::vector<std::uint32_t>& levels) {
   for (std::uint32_t& level : levels) {

@@ -1,16 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 // Spectral animation compression as published: C. Wang, Y. Liu, X. Guo, Z. Zhong, B. Le, Z. Deng, JCST 30(3), 2015.
-// Every frame's deformation gradients against the reconstructed frame before, as logarithm of rotation and stretch, by
-// unweighted least squares on harmonics of the first frame; coefficients quantized between their least and greatest,
-// then arithmetic coding of order 0 with the counts sent. The first frame is lossless.
+// The deformation gradients of every frame against the reconstructed frame before are split into the logarithm of a
+// rotation and a stretch, and projected by unweighted least squares onto harmonics of the first frame. The coefficients
+// are quantized between their least and greatest values and coded by arithmetic coding of order 0, whose counts are
+// sent. The first frame is lossless.
 //
-// A setting is BASES/BITS, and after it /no-polar (the nine entries of the gradients themselves) or /no-arithmetic
-// (all BITS of each coefficient). What the paper leaves open: least and greatest are each channel's over the clip,
-// found by a pass without quantization; each component's mean vertex is sent per frame as float32.
+// A setting is BASES/BITS. After it may follow /no-polar, which codes the nine entries of the gradients instead, and
+// /no-arithmetic, which sends all BITS of each coefficient. The paper leaves two things open: here, the least and
+// greatest values are those of each channel over the clip, found by a pass without quantization, and the mean vertex of
+// each component is sent per frame as float32.
 //
-// --report writes CPU seconds by step ("range": the pass without quantization as a whole), and of an encoder the bytes
-// of each part of the stream, the number of harmonics that the components got, and how often each level appears, a
-// table a channel.
+// --report writes the CPU seconds of each step, where "range" is the whole pass without quantization. An encoder also
+// reports the bytes of each part of the stream, the number of harmonics of each component, and for each channel how
+// often each level appears.
 #include <Eigen/Core>
 #include <algorithm>
 #include <nlohmann/json.hpp>
@@ -32,12 +34,12 @@ using Eigen::MatrixXd;
 
 constexpr Eigen::Index kChannels = Quantizer::kChannels;
 
-// What --report asks for.
+// The measurements for --report.
 struct Report {
   StepClock clock;
   nlohmann::ordered_json json = nlohmann::ordered_json::object();
 
-  // What was written since the last call is this part of the stream.
+  // Counts the bytes written since the last call as the part `name` of the stream.
   void Part(const char* name, const ByteWriter& out) {
     json["bytes"][name] = out.size() - written_;
     written_ = out.size();
@@ -92,10 +94,10 @@ PositionMatrix MatrixOf(const Positions& positions, const std::vector<std::uint3
   return out;
 }
 
-// Draco's connectivity with the vertices of each component in a run.
+// Draco's connectivity with the vertices ordered such that each component is a run.
 struct FirstFrame {
   std::vector<Triangle> triangles;
-  std::vector<std::uint32_t> order;  // of Draco's vertices
+  std::vector<std::uint32_t> order;  // Draco's number of each vertex
 };
 
 FirstFrame SortByComponent(const Connectivity& connectivity) {
@@ -110,7 +112,8 @@ FirstFrame SortByComponent(const Connectivity& connectivity) {
   return first;
 }
 
-// Both directions: the frame that these coefficients make of the one before.
+// Reconstructs a frame from its coefficients and the frame before. `positions` has the frame before and becomes the new
+// one. Encoder and decoder both call it.
 Status Reconstruct(const SpectralBasis& basis, const Settings& settings, const MatrixXd& coefficients,
                    const PositionMatrix& centres, StepClock& clock, PositionMatrix& positions) {
   const MatrixXd fields = basis.Fields(coefficients);
@@ -129,13 +132,15 @@ Status Reconstruct(const SpectralBasis& basis, const Settings& settings, const M
   return Status::Ok();
 }
 
-// Goes through the frames as the decoder will; `code` may change the coefficients.
+// Projects all frames, reconstructing each one as the decoder will. `code` is called with the coefficients of each
+// frame and may change them.
 template <class Code>
 Status EncodeFrames(const SpectralBasis& basis, const Settings& settings, const std::vector<PositionMatrix>& frames,
                     StepClock& clock, Code&& code) {
   PositionMatrix decoded = frames[0];
   for (std::size_t f = 1; f < frames.size(); ++f) {
-    TriangleFields fields(basis.triangles());  // turns from frame to frame are below pi: no branches to follow
+    TriangleFields fields(basis.triangles());  // new for each frame, since rotations from frame to frame are below pi
+                                               // and need no unwrapping
     MatrixXd measured = fields.Measure(decoded, frames[f]);
     for (Eigen::Index j = 0; !settings.polar && j < measured.rows(); ++j) {
       double channels[kChannels];
@@ -165,7 +170,7 @@ RangeDecoder ReadCode(ByteReader& in) {
   return RangeDecoder(in.Bytes(size));
 }
 
-// The least and the greatest coefficient of each channel over the whole clip.
+// Finds the least and the greatest coefficient of each channel over the whole clip.
 Status MeasureRange(const SpectralBasis& basis, const Settings& settings, const std::vector<PositionMatrix>& frames,
                     Quantizer& quantizer) {
   bool any = false;
@@ -182,7 +187,7 @@ Status MeasureRange(const SpectralBasis& basis, const Settings& settings, const 
   });
 }
 
-// Writes what the decoder needs before any coefficient, and each frame's centres.
+// Writes everything that the decoder needs before the coefficients, with the centres of each frame.
 void WriteHeader(const Settings& settings, const Quantizer& quantizer, const SpectralBasis& basis,
                  const std::vector<PositionMatrix>& frames, ByteWriter& out, Report& report) {
   out.Varint(settings.bases);
@@ -267,7 +272,7 @@ Positions PositionsOf(const PositionMatrix& matrix) {
   return out;
 }
 
-// The inverse of WriteHeader(). `centres` has one matrix a frame but the first, of `components` rows.
+// The inverse of WriteHeader(). `centres` gets one matrix of `components` rows for each frame but the first.
 bool ReadHeader(ByteReader& in, std::uint32_t components, Settings& settings, Quantizer& quantizer,
                 std::vector<PositionMatrix>& centres) {
   settings.bases = in.Varint();

@@ -37,7 +37,7 @@ Status SpectralBasis::Build(std::vector<Triangle> triangles, const PositionMatri
     const double share = static_cast<double>(bases) * c.count / n;
     counts.push_back(std::min(c.count, std::max(1u, static_cast<std::uint32_t>(share))));
   }
-  // The exact harmonics need no grid but for its size.
+  // The exact harmonics use only the size of the grid.
   const std::vector<GridPosition> grid(n);
   const EdgeList edges = BuildEdges(triangles_);
   HarmonicBasis harmonics;
@@ -66,8 +66,8 @@ Status SpectralBasis::Build(std::vector<Triangle> triangles, const PositionMatri
 Status SolveGradients(const SpectralBasis& basis, const PositionMatrix& reference,
                       const std::vector<Eigen::Matrix3d>& gradients, const PositionMatrix& centres,
                       PositionMatrix& out) {
-  // The Dirichlet energy of a triangle is half the sum over its edges of the cotangent opposite times what the edge
-  // departs from J e, squared.
+  // The Dirichlet energy of a triangle is half the sum, over its edges e, of the cotangent opposite the edge times the
+  // squared distance of the deformed edge from J e.
   std::vector<Eigen::Triplet<double>> entries;
   PositionMatrix right = PositionMatrix::Zero(reference.rows(), 3);
   for (std::size_t j = 0; j < basis.triangles().size(); ++j) {
@@ -75,7 +75,7 @@ Status SolveGradients(const SpectralBasis& basis, const PositionMatrix& referenc
     for (std::size_t k = 0; k < 3; ++k) {
       const std::uint32_t a = t[(k + 1) % 3], b = t[(k + 2) % 3];
       const Eigen::Vector3d u = reference.row(a) - reference.row(t[k]), v = reference.row(b) - reference.row(t[k]);
-      // An angle below half a degree counts as that: slivers must not outweigh all else.
+      // Angles below half a degree count as half a degree, so that slivers do not outweigh all other triangles.
       const double area2 = std::max(u.cross(v).norm(), 0.01 * u.norm() * v.norm());
       if (!(area2 > 0)) continue;
       const double weight = u.dot(v) / area2 / 2;

@@ -14,17 +14,18 @@
 
 namespace sac::bench {
 
-// What Wang et al. 2015 ("Spectral animation compression", JCST 30(3)) derive from the first frame: manifold harmonics
-// H, exact ones, and fields at triangles as means of fields at vertices, C H.
+// The basis that Wang et al. 2015 ("Spectral animation compression", JCST 30(3)) derive from the first frame: the exact
+// manifold harmonics H at the vertices, and C H at the triangles, where each triangle has the mean of its vertices.
 class SpectralBasis {
  public:
-  // `order`: the vertices of the mesh with those of each component in a run; everything else is in that order.
+  // The vertices of the mesh in an order in which each component is a run. Everything else here is in that order.
   static std::vector<std::uint32_t> ComponentOrder(std::span<const Triangle> triangles, std::size_t vertices);
 
-  // `bases` over all components, shared by vertices, at least one each.
+  // Computes `bases` harmonics in all. Components share them in proportion to their vertices; each gets at least one.
   Status Build(std::vector<Triangle> triangles, const PositionMatrix& first_frame, std::uint32_t bases);
 
-  // The coefficients (bases x channels) whose fields are nearest to those of the triangles, every triangle alike.
+  // The coefficients (bases x channels) nearest to `fields` (triangles x channels), with the same weight for every
+  // triangle.
   Eigen::MatrixXd Project(const Eigen::MatrixXd& fields) const {
     return normal_.solve(at_triangles_.transpose() * fields);
   }
@@ -41,8 +42,9 @@ class SpectralBasis {
   Eigen::LDLT<Eigen::MatrixXd> normal_;
 };
 
-// The vertices that minimize, over the triangles of `reference`, area times || grad x - J ||^2 (Sumner and Popovic
-// 2004), J being one 3 x 3 matrix a triangle. Each component's mean vertex becomes its row of `centres`.
+// Computes the vertices x that minimize the sum over the triangles of `reference` of area * || grad x - J ||^2 (Sumner
+// and Popovic 2004), where `gradients` has the 3 x 3 matrix J of each triangle. The mean vertex of each component is
+// its row of `centres`.
 Status SolveGradients(const SpectralBasis& basis, const PositionMatrix& reference,
                       const std::vector<Eigen::Matrix3d>& gradients, const PositionMatrix& centres,
                       PositionMatrix& out);

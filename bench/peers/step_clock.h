@@ -9,10 +9,11 @@
 
 namespace sac::bench {
 
-// CPU seconds of the process by step, all its threads together, in the order in which the steps first came.
+// Measures the CPU seconds of the process, all threads together, by step. Steps are listed in the order of their first
+// lap.
 class StepClock {
  public:
-  // What went by since the last call, or since the clock was made, was this step.
+  // Adds the time since the last call, or since the clock was made, to `step`.
   void Lap(const char* step) {
     const double now = Now(), spent = now - last_;
     last_ = now;

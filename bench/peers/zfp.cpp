@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// zfp on each coordinate as an array of vertices by frames, in its mode of fixed accuracy.
+// zfp on each coordinate as an array of vertices by frames, in zfp's fixed-accuracy mode.
 #include <zfp.h>
 
 #include "bench/peers/array_peer.h"
@@ -8,7 +8,7 @@
 namespace sac::bench {
 namespace {
 
-// The array of a coordinate, frame after frame. zfp takes its blocks of 4 by 4 from it.
+// The array of one coordinate, frame after frame, which zfp divides into blocks of 4 by 4.
 struct Array {
   std::vector<float> values;
   zfp_field* field;
@@ -50,7 +50,7 @@ Status Decode(ByteReader& in, std::vector<Positions>& frames) {
   const auto tolerance = static_cast<double>(in.F32());
   for (std::size_t a = 0; a < 3; ++a) {
     const auto part = in.Bytes(in.Varint());
-    std::vector<std::uint8_t> words(part.begin(), part.end());  // whole words for zfp
+    std::vector<std::uint8_t> words(part.begin(), part.end());  // padded below, since zfp reads whole words
     words.resize(words.size() + 16);
     Array array(n, frames.size());
     zfp_stream_set_accuracy(array.zfp, tolerance);

@@ -11,7 +11,7 @@ namespace {
 // The monotone piecewise cubic of Fritsch and Carlson 1980 with Fritsch and Butland's slopes (1984): MATLAB's pchip.
 class MonotoneCubic {
  public:
-  // `x` ascending, at least two.
+  // `x` must ascend and have at least two values.
   MonotoneCubic(std::vector<double> x, std::vector<double> y) : x_(std::move(x)), y_(std::move(y)), slope_(x_.size()) {
     const std::size_t last = x_.size() - 1;
     if (last == 1) {
@@ -62,7 +62,7 @@ class MonotoneCubic {
   std::vector<double> x_, y_, slope_;
 };
 
-// Log rate over log distortion.
+// The curve of the logarithm of the rate over that of the distortion, empty with fewer than two points.
 std::optional<MonotoneCubic> CurveOf(std::vector<RatePoint> points) {
   std::sort(points.begin(), points.end(), [](const RatePoint& a, const RatePoint& b) {
     return a.rate != b.rate ? a.rate < b.rate : a.distortion < b.distortion;

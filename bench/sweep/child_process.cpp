@@ -18,7 +18,7 @@
 namespace sac {
 namespace {
 
-// A file without a name, for what a program prints: never full as a pipe would be.
+// A file without a name for the output of a program. Unlike a pipe it is never full.
 class Capture {
  public:
   Capture() : fd_(memfd_create("output", MFD_CLOEXEC)) {}
@@ -43,7 +43,7 @@ class Capture {
   int fd_;
 };
 
-// Between fork and exec of a process with threads nothing may lock or allocate.
+// Turns the forked process into the program. It must not lock or allocate, since this process has threads.
 [[noreturn]] void Become(char* const* arguments, int out, int err) {
   prctl(PR_SET_PDEATHSIG, SIGKILL);
   sigset_t none;

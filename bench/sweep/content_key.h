@@ -10,7 +10,7 @@ struct XXH3_state_s;
 
 namespace sac {
 
-// A name for content: 32 hexadecimal digits of XXH3, which tell what differs by accident, not by malice.
+// A key for content: 32 hexadecimal digits of the hash XXH3, which is not safe against deliberate collisions.
 class ContentKey {
  public:
   ContentKey();
@@ -19,7 +19,7 @@ class ContentKey {
   ContentKey& operator=(const ContentKey&) = delete;
 
   void Add(const void* bytes, std::size_t size);
-  // Two texts are not one text.
+  // Adds a text. Two texts give another key than their concatenation.
   void Add(const std::string& text);
   std::string Text() const;
 
@@ -27,7 +27,7 @@ class ContentKey {
   XXH3_state_s* state_;
 };
 
-// The key of a file's bytes. kIoError names it.
+// Computes the key of a file's bytes. Returns kIoError, naming the file, when it cannot be read.
 Status KeyOfFile(const std::string& path, std::string& key);
 
 }  // namespace sac

@@ -21,7 +21,7 @@ Vec3f LowCorner(const Positions& positions) {
   return low;
 }
 
-// Per vertex the first one in its cell, the cells being cubes of edge `cell`.
+// For each vertex the first vertex in its cell. The cells are cubes of edge length `cell`.
 std::vector<std::uint32_t> Cluster(const Positions& positions, double cell, std::size_t& clusters) {
   const Vec3f low = LowCorner(positions);
   std::unordered_map<std::uint64_t, std::uint32_t> first;
@@ -78,7 +78,7 @@ DisplayMesh MakeDisplayMesh(const Mesh& mesh, std::uint32_t frame_count) {
     const std::uint32_t a = representative[t[0]], b = representative[t[1]], c = representative[t[2]];
     if (a != b && b != c && c != a) display.triangles.push_back({index[a], index[b], index[c]});
   }
-  // Inside the clip, where something has happened: the first frame is every codec's best.
+  // The frames are spread over the inside of the clip, since most codecs have the smallest error in the first frame.
   for (std::uint32_t k = 0; k < kFrames; ++k) {
     const auto frame = static_cast<std::uint32_t>((2 * std::uint64_t{k} + 1) * frame_count / (2 * kFrames));
     if (display.frames.empty() || display.frames.back() != frame) display.frames.push_back(frame);

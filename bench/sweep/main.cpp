@@ -74,7 +74,7 @@ Status CheckOptions(SweepOptions& options) {
   return Status::Ok();
 }
 
-// The directory of a report, held by one sweep at a time.
+// The directory of a report, locked so that only one sweep writes there at a time.
 class ReportDirectory {
  public:
   ~ReportDirectory() {
@@ -95,7 +95,7 @@ class ReportDirectory {
       return Status::IoError(path + ": another sweep is writing there");
     }
     fd_ = fd;
-    fs::remove_all(work(), error);  // of a sweep that was interrupted
+    fs::remove_all(work(), error);  // left by a sweep that was interrupted
     for (const std::string& directory : {results(), work()}) {
       fs::create_directories(directory, error);
       if (error) return Status::IoError(directory + ": " + error.message());
@@ -140,7 +140,7 @@ Status RunAndReport(const SweepOptions& options) {
   return Status::Ok();
 }
 
-// The command of the build or installation that this program is of.
+// The path of the `sac` command of the same build or installation as this program, or "sac" if there is none.
 std::string FindSac() {
   const fs::path here = fs::path(ThisProgram()).parent_path();
   for (const char* place : {"../../bin/sac", "../../cli/sac", "sac"}) {

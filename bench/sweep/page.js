@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Makes the report from the data beside it: for each clip plots, a table of Bjontegaard rates, shapes and all figures.
+// Builds the report from the embedded data: for each clip plots, a table of Bjontegaard rates, shapes and all figures.
 (() => {
 "use strict";
 
@@ -7,7 +7,7 @@ const data = JSON.parse(document.getElementById("data").textContent);
 const palette = ["#0b57d0", "#d9480f", "#2b8a3e", "#862e9c", "#c2255c", "#0c8599", "#846358", "#e0a800", "#495057",
   "#5c940d", "#f06595", "#a61e4d"];
 
-// What a result is drawn and listed by. `of` gives nothing for what has no place on a logarithmic axis.
+// The measures by which results are plotted. `of` gives undefined for values that a logarithmic axis cannot show.
 const positive = (x) => (x > 0 && Number.isFinite(x) ? x : undefined);
 const measures = [
   {title: "KG error, %", of: (r) => positive(r.kg)},
@@ -31,14 +31,14 @@ function figure(x, digits = 3) {
   return size >= 10 ** digits ? String(Math.round(x)) : x.toPrecision(digits);
 }
 
-// Labels at 1, 2 and 5 of each decade; at all of them where there is less than two.
+// Labels of ticks: at powers of ten where the axis spans more than 2.5 decades, otherwise also at 2 and 5 times them.
 function tick(value, index, ticks) {
   const wide = Math.log10(ticks[ticks.length - 1].value / ticks[0].value) > 2.5;
   const lead = Math.round(value / 10 ** Math.floor(Math.log10(value) + 1e-9));
   return (wide ? lead === 1 : lead === 1 || lead === 2 || lead === 5) ? String(+value.toPrecision(3)) : "";
 }
 
-// Codecs by name; results of a clip in the order in which they were planned.
+// The curves of a clip: for each codec its results, in the order in which they were planned.
 function curvesOf(clip) {
   return data.codecs.map((codec, index) => ({
     codec, color: palette[index % palette.length],
@@ -78,7 +78,7 @@ function drawPlot(parent, clip, curves, measure) {
       },
     },
   });
-  // How many points have come to stand in the plot, for who checks the page.
+  // The number of points within the plot is noted in the page, so that tests can check it.
   const {left, right, top, bottom} = chart.chartArea;
   const inside = (p) => p.x >= left - 1 && p.x <= right + 1 && p.y >= top - 1 && p.y <= bottom + 1;
   canvas.dataset.points = curves.reduce((n, _, i) => n + chart.getDatasetMeta(i).data.filter(inside).length, 0);

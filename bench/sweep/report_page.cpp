@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <string_view>
 
-// The files become part of the program as they are. (C++ has #embed only from 2026 on.)
+// Embeds the bytes of a file in the program. C++20 has no #embed.
 #define SAC_EMBED(symbol, path)                                                                         \
   __asm__(".section .rodata\n.global " #symbol "\n" #symbol ":\n.incbin \"" path "\"\n.global " #symbol \
           "_end\n" #symbol "_end:\n.byte 0\n.previous\n");                                              \
@@ -22,7 +22,7 @@ namespace {
 
 std::string_view View(const char* begin, const char* end) { return {begin, static_cast<std::size_t>(end - begin)}; }
 
-// In a script element a `<` could begin its end.
+// Escapes each `<`, which could begin the end tag of the script element that holds the JSON.
 std::string ForScriptElement(const std::string& json) {
   std::string text;
   for (const char c : json) {

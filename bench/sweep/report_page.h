@@ -8,7 +8,7 @@ namespace sac {
 // The HTML of a report: page.html with page.js, Chart.js, three.js and `json` in it.
 std::string ReportPage(const std::string& json);
 
-// RFC 4648.
+// The Base64 encoding of `bytes` (RFC 4648).
 std::string Base64(const std::string& bytes);
 
 }  // namespace sac

@@ -17,7 +17,7 @@ double NumberOr(const Json& json, const char* name, double otherwise) {
 }
 
 DistortionMetrics DistortionOf(const Json& json) {
-  constexpr double kInfinity = std::numeric_limits<double>::infinity();  // JSON has null for it
+  constexpr double kInfinity = std::numeric_limits<double>::infinity();  // stands as null in JSON
   DistortionMetrics metrics;
   metrics.kg = NumberOr(json, "kg", kInfinity);
   metrics.sted = NumberOr(json, "sted", kInfinity);

@@ -14,10 +14,10 @@ Json ToJson(const SweepClip& clip, const SweepCodec& codec, const SweepResult& r
 
 Status WriteResult(const std::string& path, const SweepClip& clip, const SweepCodec& codec, const SweepResult& result);
 
-// False when there is no such file, it is not whole, or the samples it goes with are gone: there is no result then.
+// Reads a result. Returns false when the file does not exist or is incomplete, or when its samples are missing.
 bool ReadResult(const std::string& path, SweepResult& result);
 
-// What `sac compare --json` prints. A KG of null is infinite.
+// Parses the output of `sac compare --json`. A KG of null means infinity.
 bool ReadDistortion(const std::string& text, DistortionMetrics& metrics);
 
 }  // namespace sac

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// Shows frames of a clip, the original above and what was decoded below, its error as colour; all turn together.
+// Shows frames of a clip: the original above, the decoded shapes below with their errors as colours. All turn together.
 "use strict";
 
-// Logarithm of the error over the diagonal, from 1e-6 to 1e-1: display_mesh.h.
+// The colours of errors from 1e-6 to 1e-1 of the diagonal, on a logarithmic scale (display_mesh.h).
 const errorColors = ["#30508f", "#3f9fb5", "#8fd07c", "#f5d94e", "#ee7b30", "#a61b29"];
 
 function numbersOf(base64, Type) {
@@ -11,7 +11,7 @@ function numbersOf(base64, Type) {
   return new Type(bytes.buffer, 0, Math.floor(bytes.length / Type.BYTES_PER_ELEMENT));
 }
 
-// Positions of one frame, in model units about `centre`.
+// The positions of one frame, in model units relative to `centre`.
 function positionsOf(samples, frame, shapes, centre) {
   const n = shapes.vertices, out = new Float32Array(3 * n);
   for (let i = 0; i < 3 * n; ++i) {
@@ -46,7 +46,7 @@ function meshOf(positions, triangles, colors) {
   return new THREE.Mesh(geometry, material);
 }
 
-// One camera for all cells, each a scene drawn into its part of the canvas.
+// Makes the cells, each of which is a scene drawn into its part of the canvas. All cells share one camera.
 function makeStrip(canvas, columns, radius) {
   const renderer = new THREE.WebGLRenderer({canvas, antialias: true});
   renderer.setPixelRatio(window.devicePixelRatio);

@@ -16,7 +16,7 @@
 namespace sac {
 namespace {
 
-// walk for walk.obj and for walk_%04d.ply.
+// The name of a clip: "walk" for walk.obj and for walk_%04d.ply.
 std::string NameOf(const std::string& path) {
   std::string name = std::filesystem::path(path).stem().string();
   name = name.substr(0, name.find('%'));
@@ -24,7 +24,7 @@ std::string NameOf(const std::string& path) {
   return name.empty() ? "clip" : name;
 }
 
-// What is compared is positions and triangles: attributes would cost bytes that not every codec can spend.
+// The mesh without attributes. Only positions and triangles are compared, since not every codec codes attributes.
 Mesh GeometryOf(const Mesh& mesh) {
   Mesh geometry;
   geometry.positions = mesh.positions;

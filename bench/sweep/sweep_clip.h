@@ -11,21 +11,23 @@
 
 namespace sac {
 
-// A clip as all codecs of a sweep get it: triangles and positions, without attributes, as an OBJ and a PC2 file.
+// A clip in the form that all codecs of a sweep get: triangles and positions, without attributes, as an OBJ file and a
+// PC2 file.
 struct SweepClip {
-  std::string name;  // of the input, without directory and extension
-  std::string key;   // of its content
+  std::string name;  // name of the input, without directory and extension
+  std::string key;   // key of the clip's content
   std::string mesh_path, cache_path;
   std::uint32_t frames = 0;
   std::size_t vertices = 0, triangles = 0;
-  double diagonal = 0;  // of the first frame's bounding box, model units
+  double diagonal = 0;  // diagonal of the first frame's bounding box, model units
   DisplayMesh display;
 };
 
-// Divides a command line's inputs into clips: a mesh followed by a cache, a pattern, or a run of other meshes.
+// Divides the inputs of a command line into clips. A clip is a mesh followed by a cache, a pattern of file names, or a
+// run of other meshes.
 std::vector<std::vector<std::string>> ClipsOf(const std::vector<std::string>& inputs);
 
-// Reads a clip and writes its two files in `directory`, named by its key. Errors name the file.
+// Reads a clip and writes its two files into `directory`, named by its key. Errors name the file at fault.
 Status PrepareClip(const std::vector<std::string>& inputs, const std::string& directory, SweepClip& clip);
 
 }  // namespace sac

@@ -33,7 +33,7 @@ std::vector<std::string> Words(const std::string& text) {
   return words;
 }
 
-// Reads what `PROGRAM describe` says: {"title", "version", "parameter", "settings": [text...]}, or {"title",
+// Reads the output of `PROGRAM describe`: {"title", "version", "parameter", "settings": [text...]}, or {"title",
 // "missing"}.
 void ReadDescription(const std::string& text, SweepCodec& codec) {
   const nlohmann::json json = nlohmann::json::parse(text, nullptr, false);

@@ -11,15 +11,15 @@ namespace sac {
 // A codec of a sweep: a program that is called
 //   PROGRAM encode MESH.obj CLIP.pc2 -o STREAM --order-map MAP OPTION...
 //   PROGRAM decode STREAM -o DECODED.pc2 --order-map MAP
-// as sac itself is. All that the decoder needs is in STREAM; MAP only says which decoded vertex is which, to measure.
+// like sac itself. The decoder gets only STREAM; MAP says which vertex each decoded one is, for measuring.
 struct SweepCodec {
   std::string name;     // without blanks, as in --peers
-  std::string title;    // for people
-  std::string version;  // of the codec
-  std::string missing;  // why it cannot be run; empty when it can
+  std::string title;    // the name to show
+  std::string version;  // version of the codec
+  std::string missing;  // why the codec cannot be run; empty when it can
   std::string program;
-  std::string program_key;  // of its bytes
-  // A point of its curve: what it is called, and its options.
+  std::string program_key;  // key of the program's bytes
+  // A point of the codec's curve: its name and its options.
   struct Setting {
     std::string name;
     std::vector<std::string> options;
@@ -27,17 +27,19 @@ struct SweepCodec {
   std::vector<Setting> settings;
 };
 
-// What `sac sweep --peers` knows, in the order of a report: names of programs sac-peer-NAME.
+// The names that `sac sweep --peers` takes, in the order of a report. Each stands for a program sac-peer-NAME.
 const std::vector<std::string>& PeerNames();
 
-// sac itself, the command `program`: a curve of qualities, one of bounds on the error (in diagonals) where there are
-// any, and for each of `variants`, words of options for `sac encode`, one more curve of the qualities.
+// Lists the curves of sac itself, which is the command `program`: one of qualities, one of bounds on the error (as
+// fractions of the diagonal) where `max_errors` has any, and one of the qualities for each of `variants`, which are
+// further options for `sac encode`.
 Status SacCodecs(const std::string& program, const std::vector<std::string>& qualities,
                  const std::vector<std::string>& max_errors, const std::vector<std::string>& variants,
                  std::vector<SweepCodec>& codecs);
 
-// The peer of a name, asked what it is and which settings it has (`PROGRAM describe`). A program that is neither in
-// `directory`, where that is given, nor beside this program nor where a build has it makes a codec that is missing.
+// Finds the program of a peer and asks it for its title and settings (`PROGRAM describe`). The program is looked for in
+// `directory` if that is given, otherwise beside this program and where a build has it. When it is not found, the
+// result says so in `missing`.
 SweepCodec FindPeer(const std::string& name, const std::string& directory);
 
 }  // namespace sac

@@ -25,7 +25,7 @@ Status WriteText(const std::string& path, const std::string& text) {
   return file.Commit();
 }
 
-// RFC 4180.
+// A value as a field of a CSV file (RFC 4180).
 std::string CsvField(const Json& value) {
   if (value.is_null()) return "";
   if (!value.is_string()) return value.dump();
@@ -106,13 +106,13 @@ Json ToJson(const Sweep& sweep) {
   json["results"] = Json::array();
   for (const SweepResult& r : sweep.results) {
     Json& result = json["results"].emplace_back(ToJson(sweep.clips[r.clip], sweep.codecs[r.codec], r));
-    result["clip_index"] = r.clip;  // names may be equal
+    result["clip_index"] = r.clip;  // an index, since several clips may have the same name
   }
   json["bd_rates"] = BdRates(sweep);
   return json;
 }
 
-// Of each curve the points nearest to these are shown as shapes.
+// The KG errors, in percent, at which shapes are shown: of each curve the points nearest to these.
 constexpr double kShownKg[] = {1, 0.1};
 
 std::vector<std::size_t> ShownResults(const Sweep& sweep, std::size_t clip) {
@@ -134,7 +134,8 @@ std::vector<std::size_t> ShownResults(const Sweep& sweep, std::size_t clip) {
   return shown;
 }
 
-// {box, vertices, triangles, frames, original, decoded: [{result, samples}...]}, arrays of numbers as base64.
+// Makes the shapes of a clip as JSON: {box, vertices, triangles, frames, original, decoded: [{result, samples}...]},
+// with arrays of numbers as base64.
 Status ShapesOf(const Sweep& sweep, std::size_t index, Json& json) {
   const SweepClip& clip = sweep.clips[index];
   DisplayBox box;

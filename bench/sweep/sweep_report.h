@@ -13,12 +13,12 @@ namespace sac {
 
 struct Sweep {
   std::vector<SweepClip> clips;
-  std::vector<SweepCodec> codecs;  // the first is sac, which the others are compared with
+  std::vector<SweepCodec> codecs;  // the first is sac; the others are compared with it
   std::vector<SweepResult> results;
-  unsigned jobs = 1;  // that were measured at a time
+  unsigned jobs = 1;  // results that were measured at the same time
 };
 
-// Writes sweep.csv (a line a result), sweep.json (clips, codecs, results, Bjontegaard rates) and sweep.html: one page
+// Writes sweep.csv (one line per result), sweep.json (clips, codecs, results, Bjontegaard rates) and sweep.html, a page
 // with plots and decoded shapes that needs no other file and no network.
 Status WriteReport(const Sweep& sweep, const std::string& directory);
 

@@ -18,7 +18,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-// Part of every result's key. To be raised when figures come to be measured otherwise.
+// A part of every result's key. Raise its number when figures are measured differently, so that old results are not
+// used.
 constexpr const char* kMeasurement = "sac sweep 1";
 
 std::string KeyOf(const SweepClip& clip, const SweepCodec& codec, const SweepCodec::Setting& setting) {
@@ -30,7 +31,7 @@ std::string KeyOf(const SweepClip& clip, const SweepCodec& codec, const SweepCod
 
 constexpr const char *kStream = ".stream", *kDecoded = ".decoded.pc2";
 
-// Files that are there while one setting is measured.
+// The files that exist only while one setting is measured.
 class Scratch {
  public:
   explicit Scratch(const std::string& stem) : stem_(stem) {}
@@ -58,7 +59,7 @@ class Scratch {
   std::string stem_;
 };
 
-// In a process of its own, so that this one stays small (ForgetPeakMemory).
+// Measures the decoded clip in a process of its own, so that this process stays small (ForgetPeakMemory()).
 Status Compare(const std::string& sac, const SweepClip& clip, const std::string& decoded, DistortionMetrics& metrics) {
   ProcessUsage usage;
   std::string text;
@@ -131,7 +132,7 @@ Status RunSweep(const std::vector<SweepClip>& clips, const std::vector<SweepCode
   Progress progress;
   std::mutex printing;
   std::size_t done = 0;
-  Status failure;  // of the disk, which no codec is to blame for
+  Status failure;  // a failure to store results, which is not an error of a codec
   const auto finish = [&](const SweepResult& result, bool is_new, const Status& stored) {
     const std::lock_guard lock(printing);
     progress.Begin("");
@@ -150,7 +151,8 @@ Status RunSweep(const std::vector<SweepClip>& clips, const std::vector<SweepCode
     std::error_code ignored;
     const bool kept = !places.keep || (fs::exists(stem + kStream, ignored) && fs::exists(stem + kDecoded, ignored));
     if (kept && ReadResult(path, result)) return finish(result, false, Status::Ok());
-    // Two results may have one key: of a clip given twice, of peers that are links.
+    // The files are named by the result's number, since two results may have the same key: when a clip is given twice
+    // or peers are links to one program.
     const Scratch files(places.work + "/" + std::to_string(&result - results.data()));
     Status status = Measure(sac, clip, codec, setting, files, result);
     if (status.ok() && places.keep) status = files.KeepAs(stem);

@@ -13,26 +13,27 @@
 
 namespace sac {
 
-// One clip coded by one codec at one setting. Each was a program of its own that got no more than its files.
+// The result of one clip, one codec and one setting. Encoder, decoder and measurement ran as programs of their own,
+// each with no more than its files.
 struct SweepResult {
   std::size_t clip = 0, codec = 0, setting = 0;
-  std::string key;    // of content, program and options; names its files
+  std::string key;    // key of content, program and options; the names of the result's files
   std::string error;  // why there is no result; empty when there is one
   std::uint64_t bytes = 0;
   double bpvf = 0;
   DistortionMetrics distortion;
   ProcessUsage encode, decode;
-  std::string samples_path;  // of the decoded frames shown: shapes, then errors (display_mesh.h)
+  std::string samples_path;  // file of the decoded frames shown: shapes, then errors (display_mesh.h)
 };
 
-// All clips by all codecs at all settings, `jobs` at a time. What an earlier run into the same directory has done, with
-// the same content, settings and programs, is taken from there. Prints a line for each new result. A codec that fails
-// is a result with an error, and is tried again by the next run. With `keep` streams and decoded clips stay beside the
-// results.
+// The directories of a sweep.
 struct SweepPlaces {
-  std::string results, work;  // directories
-  bool keep = false;
+  std::string results, work;
+  bool keep = false;  // streams and decoded clips stay beside the results
 };
+// Runs all codecs on all clips at all settings, `jobs` at a time, and prints a line for each new result. A result that
+// an earlier run into the same directory measured with the same content, settings and programs is taken from there.
+// When a codec fails, the result has an error and is tried again by the next run.
 Status RunSweep(const std::vector<SweepClip>& clips, const std::vector<SweepCodec>& codecs, const SweepPlaces& places,
                 unsigned jobs, std::vector<SweepResult>& results);
 

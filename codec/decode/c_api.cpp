@@ -13,7 +13,7 @@
 
 struct sac_decoder {
   sac::Decoder decoder;
-  std::string message;  // of the last call that failed
+  std::string message;  // message of the last call that failed
 };
 
 namespace {
@@ -21,7 +21,7 @@ namespace {
 using sac::CodeOf;
 using sac::Status;
 
-// Nothing is thrown across the border.
+// Runs `step` and turns exceptions into a status, since none may enter C code.
 template <class Step>
 sac_status Run(sac_decoder* decoder, Step&& step) {
   if (decoder == nullptr) return SAC_INVALID_ARGUMENT;
@@ -38,7 +38,7 @@ sac_status Run(sac_decoder* decoder, Step&& step) {
 
 Status Missing() { return Status::InvalidArgument("a null pointer"); }
 
-// Calls visit(member, limit) for each limit of the settings and its twin among `limits`.
+// Calls visit(member, limit) for each limit of the C settings and the same limit among `limits`.
 template <class Settings, class Limits, class Visit>
 void VisitLimits(Settings& settings, Limits& limits, Visit&& visit) {
   visit(settings.max_vertices, limits.vertices);
@@ -78,10 +78,10 @@ void Describe(const sac::FrameInfo& from, sac_frame_info* to) {
   std::copy(from.box.high.begin(), from.box.high.end(), to->box_high);
 }
 
-// The size of the sac_settings that this version began with.
+// The size of sac_settings in the first version of the interface, the least that a caller may give.
 constexpr std::size_t kFirstSettings = offsetof(sac_settings, max_frame_work) + sizeof(sac_settings::max_frame_work);
 
-// Runs the jobs of a decoder by a function of C.
+// A JobRunner that calls the caller's C function.
 struct CJobRunner {
   sac_run_jobs run;
   void* user;
@@ -94,7 +94,7 @@ struct CJobRunner {
   }
 };
 
-// Arrays of arrays are what C sees as one array.
+// The values of an array of arrays as one array for C; null when there are none.
 template <class Out, class In>
 const Out* Flat(const std::vector<In>& values) {
   static_assert(sizeof(In) % sizeof(Out) == 0 && alignof(In) == alignof(Out));
@@ -126,12 +126,12 @@ sac_status sac_decoder_open(sac_decoder** decoder, const sac_settings* settings)
   if (settings != nullptr) {
     if (settings->struct_size < kFirstSettings) return SAC_INVALID_ARGUMENT;
     if (settings->struct_size > sizeof(s)) return SAC_UNSUPPORTED;
-    std::memcpy(&s, settings, settings->struct_size);  // an older one has fewer members
+    std::memcpy(&s, settings, settings->struct_size);  // settings of an older version have fewer members
   }
   sac::DecoderSettings to;
   bool good = s.frame_step > 0 && s.threads <= 1024;
   VisitLimits(s, to.limits, [&](const auto& member, auto& limit) {
-    good = good && member >= 0;  // and a number
+    good = good && member >= 0;  // false for NaN, too
     limit = member;
   });
   if (!good) return SAC_INVALID_ARGUMENT;

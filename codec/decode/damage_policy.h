@@ -9,18 +9,19 @@
 
 namespace sac {
 
-// Decides, for everything that a stream may have wrong, whether the decoder stops or passes over it, and remembers the
-// frames that are lost with what is passed over (DecoderSettings::skip_damage).
+// Decides for every error that a part of the stream causes whether the decoder stops or passes over that part
+// (DecoderSettings::skip_damage), and remembers the frames that are lost with the parts passed over. All parts of the
+// decoder share one object.
 class DamagePolicy {
  public:
   explicit DamagePolicy(bool skips) : skips_(skips) {}
 
-  // Whether damage is passed over at all.
+  // Whether the decoder passes over damage at all.
   bool skips() const { return skips_; }
 
   // Returns the status that decoding goes on with after a part of the stream gave `status`: ok when that part is passed
-  // over. Only what is wrong with the stream is: a part that exceeds a limit, or that the caller's job system failed
-  // on, is sound, and its frames would be missing without damage.
+  // over, otherwise `status`. Only kCorrupt and kUnsupported are passed over. A part that exceeds a limit, or on which
+  // the caller's job system failed, is sound: passing over it would lose frames without damage.
   Status Judge(Status status) const { return PassesOver(status) ? Status::Ok() : status; }
 
   // Judges the status of a part that holds the frames from `first` to before `end`, which are lost when it is passed

@@ -15,8 +15,8 @@ class Decoder::Impl {
   // Forgets the stream.
   void Restart() { stream.emplace(settings); }
 
-  // Makes a call of the stream, from which no exception leaves. Exceptions are a lack of memory: the limits allow more
-  // than there is.
+  // Runs `call` on the stream and lets no exception leave. An exception means that memory ran out, because the limits
+  // allow more than the machine has.
   template <class Call>
   Status Contain(Call&& call) {
     try {
@@ -28,8 +28,8 @@ class Decoder::Impl {
   }
 
   const DecoderSettings settings;
-  std::optional<StreamDecoder> stream;  // always there; optional to be made anew in place
-  Positions positions;                  // of frames that are written to the caller's buffers, kept from call to call
+  std::optional<StreamDecoder> stream;  // never empty; std::optional so that it can be constructed anew in place
+  Positions positions;                  // frames for the caller's buffers, kept from call to call for their memory
 };
 
 Decoder::Decoder(const DecoderSettings& settings) : impl_(std::make_unique<Impl>(settings)) {}

@@ -31,7 +31,7 @@ Status CorruptFrame(std::uint32_t frame, const char* why) {
   return Status::Corrupt("frame " + std::to_string(frame) + ": " + why);
 }
 
-// Rounds what was reconstructed of `frame`. kCorrupt when that is beyond floats.
+// Rounds the reconstructed positions `matrix` of `frame` to floats. Returns kCorrupt when a float cannot hold them.
 Status Round(const PositionMatrix& matrix, std::uint32_t frame, Positions& positions) {
   if (!(matrix.array().abs() <= std::numeric_limits<float>::max()).all()) {
     return CorruptFrame(frame, "positions that are not finite");

@@ -24,7 +24,7 @@ class FrameSource {
   // are reconstructed at the same time, by `run_jobs` unless that is empty.
   FrameSource(const Shape& shape, const SequenceHeader& header, unsigned threads, const JobRunner& run_jobs);
 
-  // Holds the frames of a new group, or the next frame of an open group. The last frame of those before is kept for
+  // Holds the frames of a new group, or the next frame of an open group. The last of the frames held before is kept for
   // Interpolate(). kCorrupt when the first frame's shape is singular.
   Status Take(CodedFrames frames, bool starts_group);
   // Goes back to the first of the frames that are held. kCorrupt when the first frame's shape is singular.
@@ -36,16 +36,17 @@ class FrameSource {
   // Whether a frame that is held needed no other.
   bool IsIntra(std::uint32_t frame) const { return Find(frame) != nullptr && Find(frame)->intra; }
 
-  // Gives the positions of a frame that frames() has. Frames are asked for by ascending numbers, and all of them where
-  // they are measured against the frame before; the next one is likely to be `step` later. kCorrupt, with the frame's
-  // number; kInvalidArgument when run_jobs does not do its part.
+  // Gives the positions of a frame that frames() has, model units. Frames must be asked for by ascending numbers; where
+  // they reference the previous frame, none may be left out. The next request is expected `step` frames later, and
+  // frames are reconstructed ahead for it. Returns kCorrupt, with the frame's number, when the frame cannot be
+  // reconstructed; kInvalidArgument when run_jobs throws or leaves a job out.
   Status Reconstruct(std::uint32_t frame, std::uint32_t step, Positions& positions);
 
   // Gives the positions at `time`, in frames, whose frames before and after are held. See Decoder::Interpolate().
   Status Interpolate(double time, Positions& positions);
 
  private:
-  // A frame that is reconstructed ahead of being asked for.
+  // A frame that is reconstructed before it is asked for.
   struct Ready {
     std::uint32_t frame = 0;
     bool done = false;
@@ -57,7 +58,7 @@ class FrameSource {
   Status ReconstructWith(Reconstructor& with, std::uint32_t frame, Positions& positions) const;
   // Reconstructs a batch of frames from `frame` on, each job a run of them. kInvalidArgument when run_jobs throws.
   Status ReconstructAhead(std::uint32_t frame, std::uint32_t step);
-  // Reconstructs the run of frames of job number `job` of that batch.
+  // Reconstructs the frames of job number `job` of the batch, one after another.
   void ReconstructRun(std::size_t job);
   void DropReady() { first_ready_ = ready_count_ = 0; }
 
@@ -71,7 +72,7 @@ class FrameSource {
   // memory for the next batch.
   std::vector<Ready> ready_;
   std::size_t first_ready_ = 0, ready_count_ = 0;
-  FramePlanes between_;  // of Interpolate(), which keeps their memory
+  FramePlanes between_;  // the planes of Interpolate(), kept for their memory
 };
 
 }  // namespace sac

@@ -20,7 +20,7 @@ struct CodedFrames {
   struct Frame {
     FrameCoefficients coefficients;
     bool intra = false;  // predicted from no other frame
-    bool whole = true;   // false: its bytes are missing
+    bool whole = true;   // false when some of the frame's bytes are missing
   };
 
   std::uint32_t first = 0;  // the number of frames[0] in the clip
@@ -29,21 +29,22 @@ struct CodedFrames {
   std::uint64_t end() const { return std::uint64_t{first} + frames.size(); }
 };
 
-// Reads the frames of groups (spec.md 6.2, 6.3): bytes to integers.
+// Reads the frames of groups, that is, turns bytes into coefficients (spec.md 6.2, 6.3).
 class GroupParser {
  public:
-  // Both must outlive it.
+  // `header` and `shape` must outlive the object.
   GroupParser(const SequenceHeader& header, const Shape& shape, const Limits& limits)
       : header_(header),
         layouts_(shape.layouts),
         frames_per_group_(limits.expert.frames_per_group),
         group_values_(MaxGroupValues(limits, shape)) {}
 
-  // A group. Of one whose code is `cut` off, the frames whose bytes are all there, the others not whole. kCorrupt, with
-  // the frame's number, or when no frame is whole; kLimit.
+  // Parses the frames of a group. With `cut`, `code` may end early: frames whose bytes are missing are then marked as
+  // not whole. Returns kCorrupt, with the frame's number, when the code is wrong or no frame is whole; kLimit when the
+  // group is larger than the limits.
   Status Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, bool cut, CodedFrames& out) const;
 
-  // An open group begins; its frames come one by one.
+  // Begins an open group, whose frames come one by one to ParseNext().
   void Open(std::uint32_t first_frame);
   Status ParseNext(std::span<const std::uint8_t> code, CodedFrames& out);
   void Close() { open_.reset(); }

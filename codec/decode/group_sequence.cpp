@@ -61,7 +61,7 @@ Status GroupSequence::TakeGroup(std::span<const std::uint8_t> payload, std::uint
 }
 
 Status GroupSequence::ReadGroup(const GroupSyntax& group, std::span<const std::uint8_t> code, const HeldGroup& sent) {
-  if (held_ == sent) {  // it has been sought again
+  if (held_ == sent) {  // a seek went back to the group that is held
     SAC_RETURN_IF_ERROR(source_.Restart());
   } else {
     held_.reset();
@@ -75,7 +75,7 @@ Status GroupSequence::ReadGroup(const GroupSyntax& group, std::span<const std::u
 }
 
 Status GroupSequence::TakeFrame(std::span<const std::uint8_t> payload) {
-  if (!parser_.is_open()) return Status::Ok();  // of a group that has been given up
+  if (!parser_.is_open()) return Status::Ok();  // a record of a group that has been given up
   CodedFrames frames;
   Status status = parser_.ParseNext(payload, frames);
   if (status.ok()) {
@@ -99,7 +99,7 @@ void GroupSequence::TakeCutPacket(std::span<const std::uint8_t> packet, std::opt
   GroupSyntax group;
   std::span<const std::uint8_t> code;
   if (!ParseGroup(payload, group, code).ok() || group.open()) return;
-  // Its check is missing: what it says has to fit.
+  // The packet's CRC-32 is missing, so its numbers are trusted only when they fit.
   const std::uint64_t end = std::uint64_t{group.first_frame} + group.frames;
   if (next_frame_.value_or(group.first_frame) != group.first_frame) return;
   if (end > total_frames.value_or(0xffffffffu)) return;
@@ -116,7 +116,7 @@ Status GroupSequence::CheckEnd(std::uint32_t frames) {
   if (!next_frame_ || *next_frame_ == frames) return Status::Ok();
   Status status = Status::Corrupt("end: " + std::to_string(frames) + " frames declared, " +
                                   std::to_string(*next_frame_) + " found");
-  // With more frames than declared it is the declaration that is damaged.
+  // When more frames have come than are declared, the declaration is wrong and no frame is lost.
   return frames > *next_frame_ ? damage_.Judge(std::move(status), *next_frame_, frames) : status;
 }
 
@@ -152,7 +152,7 @@ Status GroupSequence::Interpolate(double time, Positions& positions) {
 void GroupSequence::Seek(std::optional<std::uint32_t> first_frame, std::uint32_t wanted) {
   parser_.Close();
   next_frame_ = first_frame;
-  if (!held_) source_.Drop();  // what cannot be known again, or is not whole
+  if (!held_) source_.Drop();  // frames of an open or cut group cannot be recognized when they are sent again
   PassOverFrames();
   wanted_ = wanted;
 }

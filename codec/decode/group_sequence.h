@@ -19,23 +19,24 @@
 
 namespace sac {
 
-// The groups of a stream, one after another: takes their packets and gives their frames, of which one group's wait at a
-// time. Keeps count of the frames of the clip, so that gaps and repetitions are found.
+// Takes the packets of a stream's groups, one after another, and gives out their frames. The frames of one group at a
+// time wait to be given out. The object counts the frames of the clip and so finds gaps and repetitions.
 class GroupSequence {
  public:
-  // All but `first_frame` must outlive the object; `shape` is charged with the memory of the threads. `first_frame` is
-  // the number of the frame that comes next.
+  // All references must outlive the object. The memory of the threads is added to that of `shape`. `first_frame` is the
+  // number of the frame that comes next in the stream.
   GroupSequence(const SequenceHeader& header, Shape& shape, const DecoderSettings& settings, DamagePolicy& damage,
                 std::uint64_t first_frame);
 
-  // Takes a group packet that begins at byte `begin` of the stream, and notes its place in `places`. kCorrupt, kLimit.
+  // Takes a group packet that begins at byte `begin` of the stream, and notes its place in `places`. Returns kCorrupt
+  // or kLimit as DamagePolicy judges.
   Status TakeGroup(std::span<const std::uint8_t> payload, std::uint64_t begin, SeekTable& places);
-  // Takes a record of the open group. kCorrupt, kLimit.
+  // Takes a record of the open group. Returns kCorrupt or kLimit as DamagePolicy judges.
   Status TakeFrame(std::span<const std::uint8_t> payload);
-  // Takes the frames that are whole in the bytes of a group packet whose rest is missing, as far as they are likely:
-  // their check is missing, too. The clip has `total_frames` if it is known.
+  // Takes the whole frames of a group packet that the end of the stream cuts off. The packet's CRC-32 is missing with
+  // its end, so the frames are taken only when their numbers fit what is known: the next frame, and `total_frames`.
   void TakeCutPacket(std::span<const std::uint8_t> packet, std::optional<std::uint32_t> total_frames);
-  // Checks that the clip ends here with `frames` frames in all. kCorrupt.
+  // Checks that the clip ends here with `frames` frames in all. Returns kCorrupt when it does not.
   Status CheckEnd(std::uint32_t frames);
   // Ends the open group, if there is one.
   void CloseGroup() { parser_.Close(); }
@@ -43,20 +44,20 @@ class GroupSequence {
 
   // Whether a frame waits.
   bool HasFrame() const { return next_out_ < source_.frames().end(); }
-  // Gives the next frame that waits; `shown` is empty when that frame is only a step to later ones, or is lost.
-  // kCorrupt, with the frame's number.
+  // Gives the next frame that waits. `shown` gets its number, and stays empty when the frame is not to be shown or is
+  // lost. Returns kCorrupt, with the frame's number.
   Status NextFrame(Positions& positions, std::optional<std::uint32_t>& shown);
   // Drops the frames that wait.
   void PassOverFrames() { next_out_ = source_.frames().end(); }
 
-  // The shape at `time`, in frames, whose frames before and after are held (HoldsAround()). Frames before `time` count
-  // as given. kCorrupt.
+  // Gives the positions at `time`, in frames, between two frames that are held (HoldsAround()). Frames before `time`
+  // count as given out. Returns kCorrupt when the positions are not finite.
   Status Interpolate(double time, Positions& positions);
   bool HoldsAround(double time) const;
-  // Says why frames around `time` will not come any more, or ok when they may: kCorrupt when one is lost,
-  // kInvalidArgument when one is gone.
+  // Returns ok when the frames around `time` may still come, kCorrupt when one of them is lost, and kInvalidArgument
+  // when the stream is already beyond them.
   Status CanCome(double time) const;
-  // Whether a frame that is held needed no other.
+  // Whether `frame` is held and is predicted from no other frame.
   bool IsIntra(std::uint32_t frame) const { return source_.IsIntra(frame); }
 
   // Goes on with a group that begins with `first_frame`, if that is known; frames before `wanted` are not given.
@@ -73,20 +74,21 @@ class GroupSequence {
     bool operator==(const HeldGroup&) const = default;
   };
 
-  // Counts on with `frame`, and loses the frames that are missing before it.
+  // Continues the count with `frame`, and notes the frames that are missing before it as lost.
   Status ContinueAt(std::uint32_t frame);
   Status ReadGroup(const GroupSyntax& group, std::span<const std::uint8_t> code, const HeldGroup& sent);
 
   const SequenceHeader& header_;
   const DecoderSettings& settings_;
   DamagePolicy& damage_;
-  FrameSource source_;  // before parser_, which may use the memory that threads leave
+  FrameSource source_;  // stands before parser_, which may use the memory that the threads of source_ do not take
   GroupParser parser_;
   bool group_begins_ = false;  // the next record is the first of an open group
   std::optional<HeldGroup> held_;
-  std::optional<std::uint64_t> next_frame_;  // of the stream; none where the stream has been entered
-  std::uint64_t next_out_ = 0;               // the next of the frames in source_
-  std::uint64_t wanted_ = 0;                 // frames before are not given
+  std::optional<std::uint64_t>
+      next_frame_;              // next frame of the stream; empty after a seek to a group of unknown number
+  std::uint64_t next_out_ = 0;  // next of the frames in source_ to be given out
+  std::uint64_t wanted_ = 0;    // frames before this one are not given out
 };
 
 }  // namespace sac

@@ -12,12 +12,12 @@ namespace sac {
 // The frames that are lost by damage.
 class LostFrames {
  public:
-  // Adds the frames from `first` to before `end`, of which some may be there already.
+  // Adds the frames from `first` to before `end`. Some of them may have been added before.
   void Add(std::uint64_t first, std::uint64_t end) {
     // Algorithms of std::ranges are missing in libc++ 14.
     auto at = std::lower_bound(ranges_.begin(), ranges_.end(), first,
                                [](const FrameRange& range, std::uint64_t frame) { return End(range) < frame; });
-    while (at != ranges_.end() && at->first <= end) {  // joins with what it touches
+    while (at != ranges_.end() && at->first <= end) {  // merges the ranges that overlap or touch the new one
       first = std::min<std::uint64_t>(first, at->first);
       end = std::max(end, End(*at));
       at = ranges_.erase(at);
@@ -30,7 +30,7 @@ class LostFrames {
                                      [](std::uint64_t f, const FrameRange& range) { return f < End(range); });
     return at != ranges_.end() && at->first <= frame;
   }
-  // Ascending; none touches another.
+  // The lost frames as ascending ranges that do not touch each other.
   const std::vector<FrameRange>& ranges() const { return ranges_; }
 
  private:

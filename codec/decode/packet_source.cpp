@@ -8,8 +8,9 @@
 namespace sac {
 namespace {
 
-// Bytes that lie again and again are read again and again: so many times all of them, and so many beside. From there on
-// packets are searched one by one, which reads each byte once.
+// Bytes that look like the beginning of a packet again and again are read again each time. The number of bytes that may
+// be read again is kMaxRereading times the bytes so far plus kFreeRereading. Beyond that, each packet is found by a
+// search, which reads each byte once.
 constexpr std::uint64_t kMaxRereading = 4, kFreeRereading = 1 << 20;
 
 }  // namespace
@@ -63,7 +64,7 @@ void PacketSource::Resynchronize(std::vector<std::uint8_t> pending) {
   reread_ += back;
   if (pending.size() <= replayed_) {
     replayed_ -= back;
-  } else {  // then all that was read again is in it
+  } else {  // `pending` contains all bytes that were being read again
     replay_ = std::move(pending);
     replayed_ = 1;
   }

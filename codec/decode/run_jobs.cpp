@@ -17,7 +17,7 @@ void RunOnThreads(std::size_t jobs, const std::function<void(std::size_t)>& job)
   for (std::size_t i = 1; i < jobs; ++i) {
     try {
       others.emplace_back([&job, i] { job(i); });
-    } catch (const std::exception&) {  // std::system_error, or std::bad_alloc
+    } catch (const std::exception&) {  // std::system_error or std::bad_alloc: no thread can be started
       job(i);
     }
   }

@@ -15,7 +15,8 @@ namespace sac {
 // The places in a stream where groups begin, as far as they are known.
 class SeekTable {
  public:
-  // Sets the end of the I-frame, before which no group begins. `is_first` says that the group of frame 0 begins there.
+  // Sets the byte at which the I-frame ends; no group begins before it. With `is_first` the group of frame 0 begins
+  // there.
   void Start(std::uint64_t byte, bool is_first) {
     start_ = {byte, std::nullopt};
     if (is_first) start_.first_frame = 0;
@@ -56,7 +57,7 @@ class SeekTable {
     return at == places_.begin() ? start_ : *std::prev(at);
   }
 
-  // Whether `index` says the same of a stream whose end packet begins at `end`.
+  // Whether `index` lists the same places and its last group ends at byte `end`, where the end packet begins.
   bool Matches(const StreamIndex& index, std::uint64_t end) const {
     SeekTable other;
     return other.Take(index) == end && places_ == other.places_;

@@ -27,7 +27,7 @@ Status StreamDecoder::SeekTime(double seconds, std::uint64_t& byte) {
   if (!header) return Status::NeedMoreData();
   if (header->frame_rate_numerator == 0) return Status::InvalidArgument("the stream has no frame rate");
   const double time = seconds * header->frames_per_second();
-  // The time that a frame itself is given out with must lead to it, although that time is rounded.
+  // A seek to the time that a frame was given out with must find that frame, although the time was rounded.
   const double frame = std::floor(time + 1e-9 + 4e-16 * time);
   if (!(frame >= 0 && frame <= 0xffffffffu)) return Status::InvalidArgument("a time that is no frame's");
   return Seek(static_cast<std::uint32_t>(frame), byte);

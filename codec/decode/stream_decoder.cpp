@@ -109,7 +109,8 @@ Status StreamDecoder::AdvanceAlone() {
 Status StreamDecoder::Receive(Positions& positions, FrameInfo& info, const FrameBuffers* buffers) {
   while (true) {
     if (error_) return *error_;
-    SAC_RETURN_IF_ERROR(Check(buffers));  // again when bytes that are read again have had the mesh in them
+    SAC_RETURN_IF_ERROR(
+        Check(buffers));  // checked in each round, since the mesh may be among the bytes that are read again
     if (!FrameWaits()) {
       if (!CanAdvance()) return Status::NeedMoreData();
       SAC_RETURN_IF_ERROR(AdvanceAlone());

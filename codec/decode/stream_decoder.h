@@ -28,8 +28,8 @@ class StreamDecoder {
   explicit StreamDecoder(const DecoderSettings& settings);
 
   Status Send(std::span<const std::uint8_t>& bytes);
-  // Decodes into `positions`, and from there into `buffers` unless that is null; the buffers are checked before a frame
-  // is given.
+  // Decodes into `positions`, and copies from there into `buffers` unless that is null. A frame is taken only after the
+  // buffers have been checked.
   Status Receive(Positions& positions, FrameInfo& info, const FrameBuffers* buffers);
   Status Finish();
 
@@ -38,7 +38,7 @@ class StreamDecoder {
   Status AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed);
   Status Interpolate(double time, Positions& positions, FrameInfo& info, const FrameBuffers* buffers);
 
-  // Makes an error final, until a seek.
+  // Makes an error final: later calls return it until a seek.
   Status Latch(Status status) {
     if (!status.ok()) error_ = status;
     return status;
@@ -49,9 +49,10 @@ class StreamDecoder {
   const LostFrames& lost() const { return damage_.lost(); }
 
  private:
-  // Reads a packet, or the record of an open group, from the front of `bytes` or from those that are read again.
+  // Reads a packet or a record of an open group, from the front of `bytes` or from the bytes to be read again.
   Status Advance(std::span<const std::uint8_t>& bytes);
-  // Whether there is more to read without more bytes. Gives the frames of a packet that the end of the bytes cuts off.
+  // Whether more can be read without more bytes. After Finish() it also takes the frames of a packet that the end of
+  // the bytes cuts off.
   bool CanAdvance();
   // Reads on without more bytes, unless frames wait.
   Status AdvanceAlone();
@@ -79,7 +80,7 @@ class StreamDecoder {
   StreamStart start_;
   std::optional<GroupSequence> groups_;  // once the I-frame has been read
   SeekTable places_;
-  NormalField normals_;  // for the caller's buffers
+  NormalField normals_;  // computes the normals for the caller's buffers
   std::optional<std::uint32_t> total_frames_;
   std::optional<Status> error_;
   bool ended_ = false;     // the end packet has been read

@@ -18,21 +18,22 @@
 
 namespace sac {
 
-// The start of a stream: its sequence header and its I-frame, with all that is derived from them. Both may be repeated,
-// so that a stream can be entered at the repetition (spec.md 3); repetitions must be the same bytes.
+// Reads the start of a stream, its sequence header and its I-frame, and holds everything derived from them. Both may be
+// repeated in the stream so that it can be entered at the repetition (spec.md 3). Repetitions must have the same bytes.
 class StreamStart {
  public:
   // `limits` and `damage` must outlive the object.
   StreamStart(const Limits& limits, const DamagePolicy& damage) : limits_(limits), damage_(damage) {}
 
-  // Checks that an I-frame follows each sequence header, and nothing else does. Call it with the type of each packet,
-  // before the packet is taken.
+  // Checks that the packet after each sequence header is an I-frame and that I-frames stand nowhere else. Call it with
+  // the type of each packet before the packet is taken.
   Status CheckOrder(PacketType type);
   // Takes the payload of a sequence header. kCorrupt, kUnsupported or kLimit.
   Status TakeHeader(std::span<const std::uint8_t> payload);
-  // Takes the payload of an I-frame. `is_new` tells whether the mesh came with it. kCorrupt, kUnsupported or kLimit.
+  // Takes the payload of an I-frame. `is_new` says whether the mesh was decoded from it; it is false for a repetition.
+  // Returns kCorrupt, kUnsupported or kLimit.
   Status TakeIFrame(std::span<const std::uint8_t> payload, bool& is_new);
-  // Goes on at another place of the same stream.
+  // Prepares for reading on at another place of the same stream.
   void Restart() { follows_header_ = is_foreign_ = false; }
 
   // The header and the mesh, once they have been read.
@@ -43,7 +44,7 @@ class StreamStart {
   const std::vector<std::uint32_t>& order() const { return order_; }
   Shape& shape() { return shape_; }
   const Shape& shape() const { return shape_; }
-  // Whether another stream has begun, whose packets are passed over.
+  // Whether the header of another stream has come, so that packets are passed over.
   bool is_foreign() const { return is_foreign_; }
 
  private:

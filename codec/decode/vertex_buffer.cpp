@@ -26,7 +26,7 @@ Status Check(const VertexBuffer& buffer, std::size_t vertices, const char* name)
   return Status::Ok();
 }
 
-// `to_int16` turns a component on an axis into 16 bits.
+// Writes `values` to `buffer`. `to_int16` turns the component of a value on an axis into an integer of 16 bits.
 template <class ToInt16>
 void Fill(const std::vector<Vec3f>& values, const VertexBuffer& buffer, ToInt16&& to_int16) {
   auto* out = static_cast<unsigned char*>(buffer.data);

@@ -11,11 +11,11 @@
 
 namespace sac {
 
-// Checks that `buffers` hold `vertices` vertices. kInvalidArgument.
+// Checks that `buffers` have room for `vertices` vertices. Returns kInvalidArgument when one has not.
 Status CheckBuffers(const FrameBuffers& buffers, std::size_t vertices);
 
-// Fills those of `buffers` that are wanted. `box` is the bounding box of `positions`; `normals` computes the normals if
-// they are wanted.
+// Fills those of `buffers` that are not null. `box` is the bounding box of `positions`. `normals` computes the normals
+// when their buffer is wanted.
 void FillBuffers(const Positions& positions, const std::vector<Triangle>& triangles, const Box& box,
                  const FrameBuffers& buffers, NormalField& normals);
 

@@ -14,16 +14,16 @@
 
 struct sac_encoder {
   std::unique_ptr<sac::Encoder> encoder;  // null when sac_encoder_open() failed
-  std::vector<sac::Vec3f> positions;      // of the frame at hand
-  std::vector<std::uint8_t> taken;        // given out by sac_encoder_take()
-  std::string message;                    // of the last call that failed
+  std::vector<sac::Vec3f> positions;      // the frame that is being sent
+  std::vector<std::uint8_t> taken;        // the bytes that sac_encoder_take() gave out last
+  std::string message;                    // message of the last call that failed
 };
 
 namespace {
 
 using sac::Status;
 
-// Nothing is thrown across the border.
+// Runs `step` and turns exceptions into a status, since none may enter C code.
 template <class Step>
 sac_status Run(sac_encoder* encoder, Step&& step) {
   if (encoder == nullptr) return SAC_INVALID_ARGUMENT;
@@ -37,7 +37,7 @@ sac_status Run(sac_encoder* encoder, Step&& step) {
   }
 }
 
-// The same of an encoder that could be opened.
+// The same, but fails when the encoder could not be opened.
 template <class Step>
 sac_status RunOpen(sac_encoder* encoder, Step&& step) {
   return Run(encoder, [&] {

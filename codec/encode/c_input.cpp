@@ -10,10 +10,10 @@
 namespace sac {
 namespace {
 
-// The size of sac_encoder_settings in its first version.
+// The size of sac_encoder_settings in the first version of the interface, the least that a caller may give.
 constexpr std::size_t kFirstSettings = offsetof(sac_encoder_settings, user) + sizeof(sac_encoder_settings::user);
 
-// Copies `count` values of kSize numbers each, if there are any.
+// Copies `count` values from an array of numbers. Copies nothing when `from` is null.
 template <class Value, class Number>
 void Copy(const Number* from, std::size_t count, std::vector<Value>& to) {
   static_assert(sizeof(Value) % sizeof(Number) == 0);
@@ -81,7 +81,7 @@ Status ReadMesh(const sac_input_mesh* from, Mesh& mesh) {
   if (from->triangles > 0 && from->triangle_vertices == nullptr) return Missing("triangle_vertices");
   if ((from->uvs > 0) != (from->uv_values != nullptr)) return Missing("uv_values, or uvs is 0");
   if ((from->uv_values == nullptr) != (from->triangle_uvs == nullptr)) return Missing("triangle_uvs, or no uv_values");
-  const Limits limits;  // nothing larger can be coded
+  const Limits limits;  // the default limits: larger meshes are refused before their arrays are copied
   if (from->vertices > limits.vertices || from->triangles > limits.expert.triangles) {
     return Status::Limit("mesh: more vertices or triangles than streams may have");
   }

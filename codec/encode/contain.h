@@ -8,8 +8,8 @@
 
 namespace sac {
 
-// Returns what `call` returns. When it throws for want of memory, since the limits of the settings allow more than
-// there is, the result is what `on_exception` makes of the kLimit that says so.
+// Returns what `call` returns. When `call` throws because memory is short (the limits of the settings may allow more
+// than the machine has), returns on_exception(kLimit status) instead.
 template <class Call, class OnException>
 Status Contain(Call&& call, OnException&& on_exception) {
   try {
@@ -20,7 +20,7 @@ Status Contain(Call&& call, OnException&& on_exception) {
   return on_exception(Status::Limit("out of memory"));  // short enough for a string that allocates nothing
 }
 
-// The same with the kLimit itself.
+// The same, but returns the kLimit status itself.
 template <class Call>
 Status Contain(Call&& call) {
   return Contain(call, [](Status status) { return status; });

@@ -25,7 +25,7 @@
 namespace sac {
 namespace {
 
-// A patch's harmonics compress the better the larger it is, and start the slower.
+// The harmonics of a larger patch compress better but take a decoder longer to compute. Large meshes get small patches.
 constexpr std::uint32_t kLargePatch = 200, kSmallPatch = 64, kLargePatchVertices = 50'000;
 
 double RmsRadius(const Positions& positions) {
@@ -41,14 +41,14 @@ double RmsRadius(const Positions& positions) {
       squares += d * d;
     }
   }
-  // A single point has no size of its own; how far it is from the origin tells most about how far it may go.
+  // A single point has no size; its distance from the origin stands in for the scale of its motion.
   const double radius = std::sqrt(squares / n), largest = LargestCoordinate(positions);
   if (radius > 1e-7 * largest) return radius;
   return largest > 0 ? largest : 1;
 }
 
-// Harmonics for each component in proportion to its area, which by Weyl's law is an equal bound on eigenvalues; one at
-// least, for its own rigid motion.
+// Shares `wanted` harmonics among the components in proportion to their areas, which by Weyl's law bounds the
+// eigenvalues equally. Each component gets at least one, for its translation.
 std::vector<std::uint32_t> ShareHarmonics(const DecodedMesh& mesh, std::uint32_t wanted) {
   PositionMatrix positions(static_cast<Eigen::Index>(mesh.grid.size()), 3);
   for (std::size_t v = 0; v < mesh.grid.size(); ++v) {
@@ -65,8 +65,8 @@ std::vector<std::uint32_t> ShareHarmonics(const DecodedMesh& mesh, std::uint32_t
   return counts;
 }
 
-// Chooses what the settings leave open, by the quality or by the bound on the error. Steps of displacement and detail
-// are fractions of the RMS radius.
+// Chooses the settings that the caller left open, by the quality or by the bound on the error. The steps of
+// displacement and detail are fractions of the RMS radius `rms`, which is in model units.
 Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, double rms, QualitySettings& defaults) {
   if (!settings.max_error) {
     HarmonicLimits limits = HarmonicLimitsOf(static_cast<std::uint32_t>(first.positions.size()));
@@ -86,7 +86,7 @@ Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, double
   return Status::Ok();
 }
 
-// The sequence header but for the grid of positions and the number of harmonics.
+// The sequence header without the position grid and the number of harmonics, which are filled in later.
 SequenceHeader HeaderOf(const Mesh& first, const EncoderSettings& settings, double rms,
                         const QualitySettings& defaults) {
   SequenceHeader header;
@@ -113,10 +113,10 @@ Status Progress(const EncoderSettings& settings) {
   return settings.progress && !settings.progress(0) ? Status::Cancelled() : Status::Ok();
 }
 
-// Finishes an I-frame whose mesh is `mesh` and whose harmonics are in `syntax`: derives the shape, and writes the
-// payload with the fingerprint of its harmonics. kLimit when decoders with `limits` would refuse it.
+// Finishes the I-frame of `mesh`, whose number of harmonics is in `syntax`: derives the shape, and writes the payload
+// with the fingerprint of the harmonics. Returns kLimit when decoders with `limits` would refuse the I-frame.
 Status FinishIFrame(DecodedMesh mesh, const Limits& limits, IFrameSyntax& syntax, EncodedStart& start) {
-  // The fingerprint is not known yet; the size does not depend on it.
+  // The fingerprint is not known yet, but the payload's size does not depend on it.
   const Limits of_i_frame = LimitsOfIFrame(limits, WriteIFrame(syntax, start.header).size());
   if (const Status status = BuildShape(start.header, std::move(mesh), syntax.harmonics, syntax.samples_per_harmonic,
                                        of_i_frame, start.shape);
@@ -128,7 +128,7 @@ Status FinishIFrame(DecodedMesh mesh, const Limits& limits, IFrameSyntax& syntax
   return Status::Ok();
 }
 
-// EncodeStart() with the part `share` of the harmonics that the quality stands for.
+// EncodeStart() with the fraction `share` of the harmonics that the quality stands for.
 Status EncodeStart(const Mesh& first, const EncoderSettings& settings, double share, EncodedStart& start) {
   start = {};
   SAC_RETURN_IF_ERROR(Progress(settings));
@@ -159,7 +159,8 @@ Status EncodeStart(const Mesh& first, const EncoderSettings& settings, double sh
   return FinishIFrame(std::move(decoded.mesh), settings.limits, syntax, start);
 }
 
-// Cuts the next packet, which has to be of `type`, from the front of `bytes`.
+// Takes the next packet from the front of `bytes`. Returns kCorrupt when it is not complete or not of
+// the type `type`.
 Status NextPacket(PacketReader& reader, PacketType type, std::span<const std::uint8_t>& bytes, Packet& packet) {
   std::optional<Packet> next;
   SAC_RETURN_IF_ERROR(reader.Read(bytes, next));
@@ -168,7 +169,7 @@ Status NextPacket(PacketReader& reader, PacketType type, std::span<const std::ui
   return Status::Ok();
 }
 
-// Reads what follows the I-frame of a start: bound, order, CRC-32.
+// Reads the part of a start that follows the I-frame: bound, order and CRC-32.
 Status ReadEncoderPart(std::span<const std::uint8_t> bytes, EncodedStart& start) {
   constexpr std::size_t kBound = 8, kIndex = 4, kCrc = 4;
   const std::size_t vertices = start.header.vertices;
@@ -193,7 +194,7 @@ Status EncodeStart(const Mesh& first, const EncoderSettings& settings, EncodedSt
   SAC_RETURN_IF_ERROR(CheckSettings(settings));
   SAC_RETURN_IF_ERROR(CheckMesh(first, settings.limits));
   SAC_RETURN_IF_ERROR(CheckFinite(first.positions));
-  // A small I-frame of a large mesh may not ask for as many harmonics as its quality would.
+  // Decoders allow less work for a small I-frame, so a large mesh with a small I-frame may get fewer harmonics.
   constexpr double kFewer = 0.9, kFewest = 0.1;
   for (double share = 1;; share *= kFewer) {
     const Status status = Contain([&] { return EncodeStart(first, settings, share, start); });

@@ -14,8 +14,8 @@ class Encoder::Impl {
  public:
   Impl(EncodedStart start, const EncoderSettings& settings) : stream(std::move(start), settings) {}
 
-  // Makes a call of the stream, from which no exception leaves. An exception leaves half a frame or half a group
-  // behind.
+  // Runs `call` on the stream and lets no exception leave. After an exception the stream is at an undefined point of a
+  // frame or group, so the failure is final.
   template <class Call>
   Status Do(Call&& call) {
     return Contain([&] { return call(stream); }, [&](Status status) { return stream.Latch(std::move(status)); });

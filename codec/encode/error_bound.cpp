@@ -10,15 +10,15 @@
 namespace sac {
 namespace {
 
-constexpr double kHalfUlp = 0x1p-24;  // of a float, relative
+constexpr double kHalfUlp = 0x1p-24;  // half the spacing of floats, relative to their magnitude
 
-// Half the distance from a float to the next one towards zero, which is never farther than the one away from it.
+// Half the distance from a float to the next one towards zero. The next one away from zero is never nearer.
 double HalfSpacingBelow(double magnitude) {
   const auto x = static_cast<float>(magnitude);
   return (static_cast<double>(x) - static_cast<double>(std::nextafter(x, 0.0f))) / 2;
 }
 
-// How much rounding to a float changes a number of at most this magnitude.
+// The most that rounding to a float changes a number whose magnitude is at most `magnitude`.
 double LargestRounding(double magnitude) {
   const auto x = static_cast<float>(magnitude);
   return (static_cast<double>(std::nextafter(x, std::numeric_limits<float>::infinity())) - static_cast<double>(x)) / 2;
@@ -35,7 +35,7 @@ double LargestCoordinate(const Positions& positions) {
 }
 
 double LeastMaxError(const Positions& first_frame) {
-  // 1e-30: a tenth of it is still an ordinary float.
+  // The bound is at least 1e-30, so that a tenth of it is still a normal float.
   return std::max(LargestCoordinate(first_frame) * kHalfUlp / 2, 1e-30);
 }
 
@@ -61,12 +61,13 @@ BoundedSettings SettingsOfMaxError(double max_error, const Positions& first_fram
   double diagonal = BoundingBox(first_frame).diagonal();
   if (diagonal == 0) diagonal = std::max(LargestCoordinate(first_frame), max_error);  // a single point
   const double bound = max_error / diagonal;
-  // Finer smooth planes pay as more detail rests on them, up to a point.
+  // A smaller bound needs more detail, and finer motion and displacement steps then save bytes, within limits.
   const double finer = std::clamp(std::pow(bound / 1e-3, 0.35), 0.1, 3.0);
-  // Nearly all vertices are to stay within the bound without a correction. Where detail is sparse, a coarser step does.
+  // With this step nearly all vertices stay within the bound without a correction. Where detail is sparse, a coarser
+  // step is enough.
   double detail = max_error * 0.85 * std::max(1.0, std::sqrt(bound / 3e-3));
-  // Below this, detail could not reach across the shape (a residual is 2^20 steps at most); the rest is for
-  // corrections.
+  // A residual is at most 2^20 steps, so detail with a finer step could not reach across the shape. Corrections code
+  // the remaining error.
   if (bound < 1e-6) detail = std::max(detail, 2.7e-5 * diagonal);
   return {0.02 * finer, 1.3e-4 * diagonal * finer, detail, std::clamp(std::ceil(0.5 - std::log2(bound)), 7.0, 20.0),
           200};

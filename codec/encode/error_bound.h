@@ -11,26 +11,29 @@ namespace sac {
 // The largest magnitude of a coordinate.
 double LargestCoordinate(const Positions& positions);
 
-// The smallest bound on the error that an encoder promises for a clip of this first frame: from about half the spacing
-// of its largest floats on decoded floats are the input's own, and there is nothing left to promise.
+// The smallest bound on the error, model units, that an encoder accepts for a clip with this first frame. It is about
+// half the spacing of floats at the largest coordinate; below that, decoded floats would have to equal the input's.
 double LeastMaxError(const Positions& first_frame);
 
-// The step of the correction plane that holds `max_error`. What half a step on each axis leaves is kept below the
-// bound, so that the rounding of decoded positions to floats has room: for coordinates 16 times as large as the first
-// frame's, and for any where the bound is near the precision of floats.
+// The step of the correction plane, model units, that keeps every vertex within `max_error`. The error of half a step
+// on each axis is smaller than the bound, which leaves room for the rounding of decoded positions to floats. The room
+// suffices for coordinates up to 16 times as large as the first frame's, and for any where the bound is near the
+// precision of floats.
 double CorrectionStep(double max_error, const Positions& first_frame);
 
-// The distance to `exact`, a float on each axis, of exact + error rounded to floats, at most. 0 where that rounds back.
+// An upper bound on the distance between `exact`, whose coordinates are floats, and exact + error rounded to floats. It
+// is 0 where the sum rounds back to `exact`.
 double DistanceAfterRounding(const Eigen::RowVector3d& exact, const Eigen::RowVector3d& error);
 
-// Steps and bits that make a bound on the error cheap, found by measurement (docs/rate-control.md).
+// The steps and bits with which a bound on the error takes few bytes, found by measurement (docs/rate-control.md).
 struct BoundedSettings {
   double motion_step;        // radians and strain
   double displacement_step;  // model units
   double detail_step;        // model units
-  double position_bits;
+  double position_bits;      // log2 of the extent in the I-frame's steps
   double harmonics;
 };
+// The settings for the bound `max_error`, model units.
 BoundedSettings SettingsOfMaxError(double max_error, const Positions& first_frame);
 
 }  // namespace sac

@@ -11,13 +11,14 @@
 namespace sac {
 namespace {
 
-// The grid is finer than what is coded, so that steps can follow the edges' lengths closely.
+// The grid has this many bits more than `bits`, so that steps, a whole number of cells, follow the edges' lengths
+// closely.
 constexpr int kGridBits = 5;
-// The part of a step that grows with the edges; the other is the same everywhere.
+// The share of a step that grows with the edges; the rest is the same everywhere.
 constexpr double kStepByEdges = 0.8;
-constexpr double kLongestStep = 0.5;  // of an edge
+constexpr double kLongestStep = 0.5;  // largest growing share of a step, in edge lengths
 
-// The median length of edges; 0 without any.
+// The median length of the triangles' edges, in cells; 0 without any.
 double MedianEdge(const std::vector<std::array<double, 3>>& cells, const std::vector<Triangle>& triangles) {
   std::vector<double> lengths;
   for (const Triangle& t : triangles) {
@@ -53,7 +54,7 @@ Status ChooseGrid(const Mesh& mesh, double bits, bool by_edges, SequenceHeader& 
   }
   const double step = std::exp2(header.position_bits - bits);
   const double edge = by_edges ? MedianEdge(targets.cells, mesh.triangles) : 0;
-  // Steps as long as the edges have nothing to follow.
+  // Steps that are about as long as the edges do not follow them.
   const bool follows = edge > 0 && kStepByEdges * step / edge < kLongestStep;
   const double share = follows ? kStepByEdges : 0;
   targets.steps.base = static_cast<std::uint32_t>(std::lround(std::max(16 * (1 - share) * step, 1.0)));

@@ -8,9 +8,10 @@
 
 namespace sac {
 
-// Puts the header's grid around the positions of the first frame, and finds the I-frame's steps. `bits`: log2 of the
-// extent in steps at edges of median length. `by_edges`: whether steps follow the edges' lengths. kInvalidArgument when
-// the coordinates span more than floats take.
+// Sets the header's position grid such that it encloses the first frame, and chooses the steps of the I-frame's
+// positions. `bits` is log2 of the largest extent divided by the step at edges of median length. With `by_edges` steps
+// grow with the lengths of edges. `targets` gets the positions in cells and the steps. Returns kInvalidArgument when
+// the coordinates span more than 1e37.
 Status ChooseGrid(const Mesh& mesh, double bits, bool by_edges, SequenceHeader& header, PositionTargets& targets);
 
 }  // namespace sac

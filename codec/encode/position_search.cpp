@@ -14,10 +14,11 @@ namespace {
 using Point = std::array<double, 3>;
 
 // Weights found by experiment (docs/decisions.md). Errors are counted in steps, rates in bits.
-constexpr double kFollow =
-    0.65;  // how much of the neighbours' error a vertex takes over: what moves together keeps edges
-constexpr double kPlace = 0.15;        // of the squared error of position, beside that of the edges' lengths
-constexpr double kRate = 0.05 * 1.44;  // of a Laplacian's code length
+// The share of its neighbours' mean error that a vertex follows: vertices with equal errors keep the edges between
+// them.
+constexpr double kFollow = 0.65;
+constexpr double kPlace = 0.15;        // weight of the squared error of the position; edge lengths have weight 1
+constexpr double kRate = 0.05 * 1.44;  // weight of the estimated code length, by a Laplace distribution
 
 double Length(const Point& a, const Point& b) { return std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]); }
 
@@ -31,7 +32,7 @@ class Search {
         coded_(cells.size()),
         placed_(cells.size(), false) {}
 
-  // The best residual of the vertex predicted last: on each axis one of the two around the target.
+  // The best residual of the vertex predicted last. On each axis the two values around the target are tried.
   PositionResidual Choose() {
     const PositionPredictor::Prediction& p = predictor_.now();
     known_.clear();

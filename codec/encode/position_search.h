@@ -11,8 +11,10 @@
 
 namespace sac {
 
-// Chooses and codes positions for the vertices of `graph`, whose own are `cells`, on a grid of `bits` bits: near
-// enough, cheap, and above all such that edges keep their lengths. Errors of up to a step along each axis.
+// Chooses positions near `cells` for the vertices of `graph`, on a grid of `bits` bits per axis, and returns their
+// code. `cells` has the exact positions in cells. The choice minimizes the changes of edge lengths, the errors of
+// positions and the estimated bits. On each axis it is one of the two codable coordinates around a target, which is the
+// exact position shifted by a part of the neighbours' error (non-normative).
 std::vector<std::uint8_t> EncodePositions(std::span<const std::array<double, 3>> cells, const PositionGraph& graph,
                                           const PositionSteps& steps, int bits);
 

@@ -4,7 +4,8 @@
 namespace sac {
 namespace {
 
-// A component may have no area at all, or fewer triangles than harmonics.
+// The relative weight that is added to the diagonal of a normal matrix, which is singular when a component has no area
+// or fewer triangles than harmonics.
 constexpr double kRidge = 1e-9;
 
 Eigen::LDLT<Eigen::MatrixXd> Factor(Eigen::MatrixXd gram) {
@@ -12,7 +13,7 @@ Eigen::LDLT<Eigen::MatrixXd> Factor(Eigen::MatrixXd gram) {
   return Eigen::LDLT<Eigen::MatrixXd>(gram);
 }
 
-// The rows of each component's coefficients in the order of a plane's.
+// The rows of all components' coefficients in the order of a plane's rows.
 Eigen::MatrixXd InOrder(const HarmonicBasis& basis, const std::vector<Eigen::MatrixXd>& coefficients) {
   const Eigen::Index channels = coefficients.empty() ? 0 : coefficients[0].cols();
   Eigen::MatrixXd rows(static_cast<Eigen::Index>(basis.order.size()), channels);
@@ -81,7 +82,7 @@ Eigen::MatrixXd Projection::ProjectVertices(const Eigen::MatrixXd& field) const 
 Eigen::MatrixXd Projection::ProjectPatches(const Eigen::MatrixXd& field) const {
   std::vector<Eigen::MatrixXd> coefficients;
   for (const ComponentHarmonics& c : shape_.patch_basis.components) {
-    // Orthogonal, of unit mean square.
+    // Patch harmonics are orthogonal with a mean square of 1, so that no system has to be solved.
     coefficients.push_back(c.vectors.transpose() * field.middleRows(c.component.first, c.component.count) /
                            c.component.count);
   }

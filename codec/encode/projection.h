@@ -9,18 +9,18 @@
 
 namespace sac {
 
-// Least squares of fields onto the harmonics, component by component. Results are harmonics x channels in the order of
-// a plane's coefficients.
+// Projects fields onto the harmonics by least squares, component by component. Results are harmonics x channels, with
+// rows in the order of a plane's coefficients.
 class Projection {
  public:
-  // `shape` must outlive it. `areas`: weights of the triangles.
+  // `shape` must outlive the object. `areas` has the weight of each triangle.
   Projection(const Shape& shape, const Eigen::VectorXd& areas);
 
   // The coefficients whose mean over each triangle's three vertices is nearest to `fields` (triangles x channels),
   // weighted by area: the paper's matrix C (Wang et al. 2015, equation 6).
   Eigen::MatrixXd ProjectTriangles(const Eigen::MatrixXd& fields) const;
 
-  // The coefficients nearest to `field` (vertices x channels), every vertex alike.
+  // The coefficients nearest to `field` (vertices x channels), where every vertex has the same weight.
   Eigen::MatrixXd ProjectVertices(const Eigen::MatrixXd& field) const;
 
   // The same in patch harmonics.

@@ -9,7 +9,8 @@
 namespace sac {
 namespace {
 
-// docs/quality.md has the figures these rows give. Detail sets in where the smooth planes buy nothing more.
+// docs/quality.md has the rates and errors of these rows. Detail begins where finer motion and displacement no longer
+// reduce the error.
 constexpr std::array<QualitySettings, 11> kTable = {{
     {0, 0.15, 0.008, 0, 7.4, 200},
     {10, 0.08, 0.004, 0, 8.4, 200},
@@ -24,15 +25,16 @@ constexpr std::array<QualitySettings, 11> kTable = {{
     {100, 0.015, 0.0004, 0.0004, 14.4, 200},
 }};
 
-// Before this part of the way from none to some, detail steps are so coarse that nothing would be coded.
+// Between a row without detail and one with it, detail begins at this fraction of the way: before it, the step would be
+// so coarse that nothing would be coded.
 constexpr double kLeastDetail = 0.02;
 
-// Start time goes with vertices x harmonics^2, memory with their product.
+// The time to start grows with vertices x harmonics^2, the memory with vertices x harmonics.
 constexpr double kLeastCap = 200, kVerticesPerHarmonic = 9, kMostBasisValues = 12e6, kMostHarmonics = 1000;
 
 QualitySettings Between(const QualitySettings& low, const QualitySettings& high, double quality) {
   const double t = (quality - low.quality) / (high.quality - low.quality);
-  // Steps matter by their ratio.
+  // Steps are interpolated by their logarithms.
   const auto between = [t](double a, double b) {
     if (a == 0) return b == 0 || t < kLeastDetail ? 0.0 : b / t;  // detail fades in from an infinite step
     return a * std::pow(b / a, t);

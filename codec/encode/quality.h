@@ -5,7 +5,7 @@
 
 namespace sac {
 
-// What one figure of quality stands for.
+// The settings that one quality stands for.
 struct QualitySettings {
   double quality;
   double motion_step;        // radians and strain
@@ -15,7 +15,8 @@ struct QualitySettings {
   double harmonics;
 };
 
-// From here on there is detail; a little sooner where there are not enough harmonics for what comes before.
+// The quality from which streams have a detail plane. Where the number of harmonics is capped, detail begins a little
+// earlier.
 inline constexpr double kDetailQuality = 75;
 
 // How many harmonics a mesh takes, 200 at least.
@@ -35,7 +36,7 @@ HarmonicLimits HarmonicLimitsOf(std::uint32_t vertices);
 // result has no more than `limits.quick`.
 QualitySettings SettingsOfQuality(double quality, const HarmonicLimits& limits);
 
-// The same without detail: beyond kDetailQuality the other steps become finer.
+// The same without a detail plane: beyond kDetailQuality the other steps become finer instead.
 QualitySettings SmoothSettingsOfQuality(double quality, double most_harmonics);
 
 }  // namespace sac

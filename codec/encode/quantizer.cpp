@@ -10,14 +10,15 @@
 namespace sac {
 namespace {
 
-constexpr double kRoundUpFrom = 0.58;  // of magnitudes beyond the dead zone
-constexpr double kLargest = 2;         // that counts in what is around
-constexpr double kBusy = 0.7;          // mean magnitude
+constexpr double kRoundUpFrom = 0.58;  // fraction from which magnitudes beyond the dead zone are rounded up
+constexpr double kLargest = 2;         // larger magnitudes count as this one in the mean of the neighbours
+constexpr double kBusy = 0.7;          // mean magnitude of the neighbours from which DeadZone::busy holds
 
-// The mean magnitude of a coefficient's neighbours: of the rows beside and of the other channels alike.
+// The mean magnitude of a coefficient's neighbours. The same channel in the rows beside it and the other channels of
+// its row count one half each.
 double Around(const std::vector<double>& steps, std::size_t i, std::size_t channels) {
   const auto magnitude = [&](std::size_t j) { return j < steps.size() ? std::min(std::abs(steps[j]), kLargest) : 0; };
-  // Unsigned indices before the first are beyond the last.
+  // An index before the first wraps around to one beyond the last, whose magnitude counts as 0.
   const double rows = magnitude(i - channels) + magnitude(i + channels) +
                       0.5 * (magnitude(i - 2 * channels) + magnitude(i + 2 * channels));
   double row = -magnitude(i);

@@ -8,6 +8,7 @@ namespace sac {
 namespace {
 
 constexpr std::uint32_t kFarthest = 128;  // frames back in coding order
+// Pairs are made of the kPaired best single frames; kKept single frames and as many pairs are returned.
 constexpr std::size_t kPaired = 5, kKept = 2;
 
 struct Scored {

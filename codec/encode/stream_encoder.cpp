@@ -60,7 +60,7 @@ Status StreamEncoder::Send(std::span<const Vec3f> positions) {
   return IsFull(static_cast<std::uint32_t>(waiting_.size())) ? Latch(EncodeGroup()) : Status::Ok();
 }
 
-// A group is no longer than any decoder takes by default.
+// A group is full when it has the number of frames of the settings or one more would exceed the decoders' limits.
 bool StreamEncoder::IsFull(std::uint32_t frames) const {
   return frames == settings_.group || (std::uint64_t{frames} + 1) * FrameValues(start_.shape.layouts) >
                                           MaxGroupValues(settings_.limits, start_.shape);
@@ -74,7 +74,7 @@ Status StreamEncoder::EncodeFrame(PositionMatrix positions) {
   FrameSyntax frame;
   SAC_RETURN_IF_ERROR(
       AtFault(encoder_.EncodeNext(std::move(positions), open_frames_, frame), writer_.frames() - open_frames_));
-  RangeEncoder range;  // each frame ends with a whole byte; the models go on
+  RangeEncoder range;  // a coder of its own, since each frame is a record; the models in coder_ continue
   FrameBits bits;
   if (!coder_->Code(range, ChainSlot(open_frames_), frame, &bits)) return AtFault(MotionTooFar(), writer_.frames(), {});
   writer_.Frame(range.Finish(), bits);

@@ -19,8 +19,8 @@
 
 namespace sac {
 
-// Encodes the frames of one stream, group after group. The functions are those of Encoder, which says what they do;
-// they may throw std::bad_alloc, after which half a frame or half a group has been coded: call Latch() then.
+// Encodes the frames of one stream, group after group. The functions are those of Encoder, where they are documented.
+// They may throw std::bad_alloc, which leaves a frame or group half coded: call Latch() then.
 class StreamEncoder {
  public:
   // Begins a stream with `start`. Of `settings`, which CheckSettings() has passed, only what concerns groups is used:
@@ -33,7 +33,7 @@ class StreamEncoder {
   Status Finish();
   std::vector<std::uint8_t> TakeBytes() { return writer_.TakeBytes(); }
 
-  // Keeps a failure after which nothing can be coded.
+  // Makes a failure final, after which nothing can be coded.
   Status Latch(Status status) {
     if (!status.ok()) failure_ = status;
     return status;
@@ -52,15 +52,15 @@ class StreamEncoder {
   // The same for a failure of the group encoder, whose group begins with frame `first`.
   Status AtFault(Status status, std::uint32_t first);
 
-  // Whether a group of `frames` frames takes no more.
+  // Whether a group of `frames` frames can take no further frame.
   bool IsFull(std::uint32_t frames) const;
-  // Tells the caller that `frames` frames are coded; kCancelled when it wants no more.
+  // Tells the caller that `frames` frames are coded. Returns kCancelled when the caller wants to stop.
   Status Progress(std::uint32_t frames) const {
     return settings_.progress && !settings_.progress(frames) ? Status::Cancelled() : Status::Ok();
   }
-  // Codes the frames that wait as a group.
+  // Codes the waiting frames as a group.
   Status EncodeGroup();
-  // Codes a frame of an open group (low delay).
+  // Codes a frame of an open group (low delay). Takes the positions in decoded order, model units.
   Status EncodeFrame(PositionMatrix positions);
   void EndOpenGroup();
 
