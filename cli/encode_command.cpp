@@ -97,9 +97,9 @@ Status EncodeFiles(const EncodeOptions& options, EncodedClip& encoded, Warnings&
   Progress progress;
   progress.Begin("harmonics");
   std::unique_ptr<ClipInput> input;
-  ClipInput::Settings reading;
+  ClipInputSettings reading;
   reading.gaps = options.gaps == "hold" ? Gaps::kHold : options.gaps == "skip" ? Gaps::kSkip : Gaps::kError;
-  SAC_RETURN_IF_ERROR(ClipInput::Open(options.inputs, reading, input));
+  SAC_RETURN_IF_ERROR(ClipInput::Open(options.inputs, input, reading));
   if (options.strict) SAC_RETURN_IF_ERROR(TellWarnings(input->warnings(), true));  // better now than after the encoding
   ClipEncoding encoding = options.encoding;
   SAC_RETURN_IF_ERROR(TakeMaxError(options, input->mesh(), encoding.encoder));

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <charconv>
 #include <cmath>
 #include <cstring>
 #include <filesystem>
@@ -30,6 +31,11 @@ bool HasExtension(const std::string& path, const char* wanted) {
   return extension == wanted;
 }
 
+std::string Text(double value) {
+  char digits[32];
+  return {digits, std::to_chars(digits, digits + sizeof digits, value, std::chars_format::general, 6).ptr};
+}
+
 }  // namespace
 
 bool IsCacheName(const std::string& path) { return HasExtension(path, ".pc2") || HasExtension(path, ".mdd"); }
@@ -38,7 +44,7 @@ CacheReader::~CacheReader() {
   if (fd_ >= 0) close(fd_);
 }
 
-Status CacheReader::Open(const std::string& path, std::unique_ptr<CacheReader>& reader) {
+Status CacheReader::Open(const std::string& path, std::unique_ptr<CacheReader>& reader, bool skip_damage) {
   if (!IsCacheName(path)) return Status::InvalidArgument(path + ": not a cache by its name (.pc2, .mdd)");
   std::unique_ptr<CacheReader> opened(new CacheReader);
   opened->path_ = path;
@@ -50,12 +56,12 @@ Status CacheReader::Open(const std::string& path, std::unique_ptr<CacheReader>& 
   if (fstat(opened->fd_, &info) != 0) return Status::IoError(path + ": " + std::strerror(errno));
   if (S_ISDIR(info.st_mode)) return Status::IoError(path + ": is a directory");
   if (!S_ISREG(info.st_mode)) return Status::IoError(path + ": not a regular file");
-  SAC_RETURN_IF_ERROR(opened->ParseHeader(static_cast<std::uint64_t>(info.st_size)));
+  SAC_RETURN_IF_ERROR(opened->ParseHeader(static_cast<std::uint64_t>(info.st_size), skip_damage));
   reader = std::move(opened);
   return Status::Ok();
 }
 
-Status CacheReader::ParseHeader(std::uint64_t file_size) {
+Status CacheReader::ParseHeader(std::uint64_t file_size, bool skip_damage) {
   if (file_size == 0) return Error("the file is empty");
   const std::uint64_t header_bytes = big_endian_ ? kMddHeaderBytes : kPc2HeaderBytes;
   if (file_size < header_bytes) return Error("truncated in the header");
@@ -66,6 +72,9 @@ Status CacheReader::ParseHeader(std::uint64_t file_size) {
     if (const std::uint32_t version = LoadLittle32(header + 12); version != 1) {
       return Status::Unsupported(path_ + ": PC2 version " + std::to_string(version));
     }
+    const float start = LoadLittleFloat(header + 20), rate = LoadLittleFloat(header + 24);
+    if (start != 0) warnings_.push_back(path_ + ": its start frame " + Text(start) + " is not kept; frames begin at 0");
+    if (rate != 1) warnings_.push_back(path_ + ": its sample rate " + Text(rate) + " is not kept; it becomes 1");
   }
   frame_count_ = big_endian_ ? LoadBig32(header) : LoadLittle32(header + kPc2FramesOffset);
   point_count_ = big_endian_ ? LoadBig32(header + 4) : LoadLittle32(header + 16);
@@ -73,23 +82,50 @@ Status CacheReader::ParseHeader(std::uint64_t file_size) {
     return Error("header says " + std::to_string(static_cast<std::int32_t>(frame_count_)) + " frames of " +
                  std::to_string(static_cast<std::int32_t>(point_count_)) + " points");
   }
-  if (frame_count_ == 0) return Error("no frames");
+  if (frame_count_ == 0 && !(skip_damage && !big_endian_)) return Error("no frames");
   if (point_count_ == 0) return Error("no points");
-
   data_offset_ = header_bytes + (big_endian_ ? 4 * std::uint64_t{frame_count_} : 0);
+  SAC_RETURN_IF_ERROR(CountFrames(file_size, skip_damage));
+  return big_endian_ ? ReadTimes() : Status::Ok();
+}
+
+// Holds the number of frames in the header against the size of the file.
+Status CacheReader::CountFrames(std::uint64_t file_size, bool skip_damage) {
   const std::uint64_t frame_bytes = kPointBytes * point_count_;
   const std::uint64_t data = file_size < data_offset_ ? 0 : file_size - data_offset_;
-  if (data / frame_bytes != frame_count_ || data % frame_bytes != 0) {
-    return Error("header says " + std::to_string(frame_count_) + " frames of " + std::to_string(point_count_) +
-                 " points, but the file has " + std::to_string(data / frame_bytes) + " frames and " +
-                 std::to_string(data % frame_bytes) + " bytes");
+  const std::uint64_t whole = data / frame_bytes, rest = data % frame_bytes;
+  if (whole == frame_count_ && rest == 0) return Status::Ok();
+  const std::string what = "header says " + std::to_string(frame_count_) + " frames of " +
+                           std::to_string(point_count_) + " points, but the file has " + std::to_string(whole) +
+                           " whole frames and " + std::to_string(rest) + " bytes";
+  if (!skip_damage || whole == 0) return Error(what);
+  const std::uint64_t most = frame_count_ == 0 ? kCountLimit : frame_count_;
+  const auto kept = static_cast<std::uint32_t>(std::min(whole, most));
+  warnings_.push_back(path_ + ": " + what + "; the first " + std::to_string(kept) + " frames are read");
+  frame_count_ = kept;
+  return Status::Ok();
+}
+
+// The rate of the frames from the times of an MDD.
+Status CacheReader::ReadTimes() {
+  std::vector<char> bytes(std::size_t{4} * frame_count_);
+  SAC_RETURN_IF_ERROR(ReadAt(kMddHeaderBytes, bytes.data(), bytes.size()));
+  const auto time = [&bytes](std::size_t f) { return static_cast<double>(LoadBigFloat(bytes.data() + 4 * f)); };
+  if (time(0) != 0) {
+    warnings_.push_back(path_ + ": its first time " + Text(time(0)) + " s is not kept; frames begin at 0 s");
   }
-  if (big_endian_ && frame_count_ > 1) {
-    char first[4], last[4];
-    SAC_RETURN_IF_ERROR(ReadAt(header_bytes, first, sizeof first));
-    SAC_RETURN_IF_ERROR(ReadAt(data_offset_ - 4, last, sizeof last));
-    const double rate = (frame_count_ - 1) / (static_cast<double>(LoadBigFloat(last)) - LoadBigFloat(first));
-    if (std::isfinite(rate) && rate > 0) fps_ = std::abs(rate - std::round(rate)) < 1e-4 ? std::round(rate) : rate;
+  if (frame_count_ < 2) return Status::Ok();
+  const double step = (time(frame_count_ - 1) - time(0)) / (frame_count_ - 1);
+  const double rate = 1 / step;
+  if (std::isfinite(rate) && rate > 0) fps_ = std::abs(rate - std::round(rate)) < 1e-4 ? std::round(rate) : rate;
+  // Times are float32: they are even as far as their digits and a hundredth of a frame tell.
+  const double tolerance = 0.01 * std::abs(step) + std::abs(time(frame_count_ - 1)) * 0x1p-22;
+  for (std::uint32_t f = 1; f < frame_count_; ++f) {
+    if (std::abs(time(f) - time(f - 1) - step) <= tolerance && step > 0) continue;
+    warnings_.push_back(path_ + ": its times are uneven: frame " + std::to_string(f) + " comes " +
+                        Text(time(f) - time(f - 1)) + " s after the one before, the mean is " + Text(step) +
+                        " s; frames become even");
+    break;
   }
   return Status::Ok();
 }

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "files/output_file.h"
+#include "files/warnings.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
 
@@ -26,7 +27,9 @@ class CacheReader {
  public:
   // Checks the header against the size of the file before anything is allocated: kCorrupt if they disagree, if a count
   // is negative, or if there are no frames or no points; kIoError if the file cannot be read or is no regular file.
-  static Status Open(const std::string& path, std::unique_ptr<CacheReader>& reader);
+  // With `skip_damage`, frames that are whole are read from a file that is too short or too long for its header, or
+  // whose header has no frames yet; a warning tells which. It needs one whole frame, and an MDD all its times.
+  static Status Open(const std::string& path, std::unique_ptr<CacheReader>& reader, bool skip_damage = false);
   ~CacheReader();
   CacheReader(const CacheReader&) = delete;
   CacheReader& operator=(const CacheReader&) = delete;
@@ -38,12 +41,17 @@ class CacheReader {
   // Frames a second, from the first and last time of an MDD; PC2 does not say. Within 1e-4 of an integer it is that.
   std::optional<double> fps() const { return fps_; }
 
+  // What of the header is not kept, as a start frame other than 0, and what was skipped as damaged.
+  const Warnings& warnings() const { return warnings_; }
+
   // Positions of `frame`, in 0..frame_count() - 1. They may be NaN or infinite.
   Status Read(std::uint32_t frame, Positions& positions);
 
  private:
   CacheReader() = default;
-  Status ParseHeader(std::uint64_t file_size);
+  Status ParseHeader(std::uint64_t file_size, bool skip_damage);
+  Status CountFrames(std::uint64_t file_size, bool skip_damage);
+  Status ReadTimes();
   Status ReadAt(std::uint64_t offset, char* bytes, std::size_t size) const;
   Status Error(const std::string& what) const { return Status::Corrupt(path_ + ": " + what); }
 
@@ -53,6 +61,7 @@ class CacheReader {
   std::uint32_t frame_count_ = 0, point_count_ = 0;
   std::uint64_t data_offset_ = 0;
   std::optional<double> fps_;
+  Warnings warnings_;
   std::vector<char> bytes_;
 };
 

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "files/clean_om.h"
+
 #include <OpenMesh/Core/IO/OMFormat.hh>
 #include <cstdint>
 #include <string>
 
 #include "files/byte_order.h"
-#include "files/openmesh_input.h"
 
 namespace sac {
 namespace {
@@ -124,6 +125,23 @@ bool IsWanted(const ChunkHeader& chunk) {
   return chunk.entity == Chunk::Entity_Face && chunk.type == Chunk::Type_Topology;
 }
 
+// Tells what of a chunk that is not kept was worth keeping; the status of elements is not.
+void TellUnwanted(const ChunkHeader& chunk, Losses& losses) {
+  constexpr const char* kEntities[] = {"vertices", "the mesh", "faces", "", "edges", "", "halfedges", ""};
+  const std::string of = std::string(" of ") + kEntities[chunk.entity & 7];
+  if (chunk.type == Chunk::Type_Custom) {
+    losses.Count("custom properties" + of);
+  } else if (chunk.named) {
+    losses.Count("named properties" + of);
+  } else if (chunk.type == Chunk::Type_Normal || chunk.type == Chunk::Type_Color ||
+             chunk.type == Chunk::Type_Texcoord) {
+    losses.Count((chunk.type == Chunk::Type_Normal  ? "normals"
+                  : chunk.type == Chunk::Type_Color ? "colors"
+                                                    : "texture coordinates") +
+                 of);
+  }
+}
+
 void SkipCustom(const Header& header, Reader& reader) {
   if (header.version > om::mk_version(2, 1)) reader.Take(reader.Take8());  // the name of its type
   reader.Take(reader.Take32());
@@ -131,7 +149,7 @@ void SkipCustom(const Header& header, Reader& reader) {
 
 }  // namespace
 
-Status CleanOm(std::string_view bytes, std::string& cleaned) {
+Status CleanOm(std::string_view bytes, std::string& cleaned, Losses& losses) {
   Reader reader{bytes};
   const std::string_view start = reader.Take(4);
   Header header;
@@ -158,7 +176,12 @@ Status CleanOm(std::string_view bytes, std::string& cleaned) {
       reader.Take(size);
     }
     if (reader.failed) return Status::Corrupt("truncated");
-    if (IsWanted(chunk) && !chunk.named) cleaned.append(begin, static_cast<std::size_t>(reader.rest.data() - begin));
+    if (!IsWanted(chunk) || chunk.named) {
+      TellUnwanted(chunk, losses);
+      continue;
+    }
+    cleaned.append(begin, static_cast<std::size_t>(reader.rest.data() - begin));
+    if (chunk.type == Chunk::Type_Pos && chunk.bits_code == Chunk::Float_64) losses.Count("digits of double positions");
   }
   // The sentinel, so that the reader does not look for an end of file.
   char sentinel[2] = {static_cast<char>(Chunk::Entity_Sentinel << Chunk::OFF_ENTITY), 0};

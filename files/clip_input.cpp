@@ -1,12 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "files/clip_input.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 #include <utility>
 
+#include "files/cache_match.h"
+#include "files/clip_offset.h"
 #include "files/frame_rate.h"
-#include "files/mesh_file.h"
+#include "files/path.h"
 
 namespace sac {
 namespace {
@@ -26,16 +30,22 @@ Status CheckAttributes(const Mesh& mesh, const std::string& path) {
   return CheckFinite(mesh.uvs, path + ": texture coordinates");
 }
 
+Status CheckPositions(const MeshFile& file, const std::string& path) {
+  if (file.not_finite.empty()) return Status::Ok();
+  return Status::InvalidArgument(path + ": " + file.not_finite + ": not a finite number");
+}
+
 Status CheckCacheFrame(const Positions& positions, const std::string& path, std::uint32_t frame) {
   return CheckFinite(positions, path + ": frame " + std::to_string(frame) + ", vertex");
 }
 
 }  // namespace
 
-Status ClipInput::Open(const std::vector<std::string>& arguments, const Settings& settings,
-                       std::unique_ptr<ClipInput>& input) {
+Status ClipInput::Open(const std::vector<std::string>& arguments, std::unique_ptr<ClipInput>& input,
+                       const ClipInputSettings& settings) {
   if (arguments.empty()) return Status::InvalidArgument("no input");
   auto opened = std::make_unique<ClipInput>();
+  opened->settings_ = settings;
   opened->name_ = arguments[0];
   for (std::size_t i = 0; i < arguments.size(); ++i) {
     if (IsCacheName(arguments[i]) && !(i == 1 && arguments.size() == 2)) {
@@ -55,22 +65,118 @@ Status ClipInput::Open(const std::vector<std::string>& arguments, const Settings
 }
 
 Status ClipInput::OpenCache(const std::string& mesh_path, const std::string& cache_path) {
-  SAC_RETURN_IF_ERROR(ReadMesh(mesh_path, mesh_));
-  SAC_RETURN_IF_ERROR(CheckAttributes(mesh_, mesh_path));
-  SAC_RETURN_IF_ERROR(CacheReader::Open(cache_path, cache_));
-  if (cache_->point_count() != mesh_.positions.size()) {
+  SAC_RETURN_IF_ERROR(ReadMeshFile(mesh_path, {}, file_));
+  SAC_RETURN_IF_ERROR(CheckAttributes(file_.mesh, mesh_path));
+  SAC_RETURN_IF_ERROR(CacheReader::Open(cache_path, cache_, settings_.skip_damage));
+  Mesh& mesh = file_.mesh;
+  if (cache_->point_count() != mesh.positions.size()) {
     return Status::InvalidArgument(cache_path + ": " + std::to_string(cache_->point_count()) + " points, but " +
-                                   mesh_path + " has " + std::to_string(mesh_.positions.size()) + " vertices");
+                                   mesh_path + " has " + std::to_string(mesh.positions.size()) + " vertices");
   }
-  SAC_RETURN_IF_ERROR(cache_->Read(0, mesh_.positions));
-  return CheckCacheFrame(mesh_.positions, cache_path, 0);
+  warnings_ = file_.warnings;
+  warnings_.insert(warnings_.end(), cache_->warnings().begin(), cache_->warnings().end());
+  Positions frame;
+  SAC_RETURN_IF_ERROR(cache_->Read(0, frame));
+  SAC_RETURN_IF_ERROR(CheckCacheFrame(frame, cache_path, 0));
+  if (IsLikelyInAnotherOrder(mesh, frame)) {
+    warnings_.push_back(cache_path + ": edges of the mesh are many times as long in it: are the vertices of " +
+                        mesh_path + " in another order than those of the cache?");
+  }
+  TellCoarse(frame, cache_path);
+  offset_ = settings_.offset.value_or(Vec3d{});
+  file_.exact = {};
+  mesh.positions = std::move(frame);
+  Subtract(offset_, mesh.positions);
+  return Status::Ok();
 }
 
 Status ClipInput::OpenSequence() {
   if (paths_.size() > std::numeric_limits<std::uint32_t>::max()) return Status::Limit(paths_[0] + ": too many frames");
-  SAC_RETURN_IF_ERROR(ReadMesh(paths_[0], mesh_));
-  SAC_RETURN_IF_ERROR(CheckAttributes(mesh_, paths_[0]));
-  return CheckFinite(mesh_.positions, paths_[0] + ": vertex");
+  const bool stl =
+      std::all_of(paths_.begin(), paths_.end(), [](const auto& path) { return Extension(path) == ".stl"; });
+  if (stl && paths_.size() > 1) {
+    SAC_RETURN_IF_ERROR(WeldSequence());
+  } else {
+    SAC_RETURN_IF_ERROR(ReadMeshFile(paths_[0], {}, file_));
+  }
+  SAC_RETURN_IF_ERROR(CheckAttributes(file_.mesh, paths_[0]));
+  SAC_RETURN_IF_ERROR(CheckPositions(file_, paths_[0]));
+  warnings_.insert(warnings_.begin(), file_.warnings.begin(), file_.warnings.end());
+  offset_ = settings_.offset.value_or(ChooseOffset(file_.exact));
+  file_.mesh.positions = Relative(file_, offset_);
+  file_.exact = {};
+  TellCoarse(file_.mesh.positions, paths_[0]);
+  return Status::Ok();
+}
+
+// Reads all frames for what is one vertex in each of them, and then the first.
+Status ClipInput::WeldSequence() {
+  Welding welding;
+  std::size_t corners = 0, first_vertices = 0;
+  for (const std::string& path : paths_) {
+    MeshFile soup;
+    SAC_RETURN_IF_ERROR(ReadMeshFile(path, {.weld = false}, soup));
+    const std::size_t count = soup.mesh.positions.size();
+    if (&path == paths_.data()) corners = count;
+    if (count != corners) {
+      return Status::InvalidArgument(path + ": " + std::to_string(count / 3) + " triangles, but " + paths_[0] +
+                                     " has " + std::to_string(corners / 3));
+    }
+    SAC_RETURN_IF_ERROR(CheckPositions(soup, path));
+    welding.Add(DoublePositions(soup));
+    if (&path == paths_.data()) first_vertices = welding.size();
+  }
+  if (welding.size() > first_vertices) {
+    warnings_.push_back(paths_[0] + ": corners of triangles that meet in it part in later frames: " +
+                        std::to_string(welding.size()) + " vertices and not " + std::to_string(first_vertices));
+  }
+  welding_ = std::move(welding);
+  return ReadFrame(0, file_);
+}
+
+Status ClipInput::ReadFrame(std::uint32_t index, MeshFile& file) const {
+  const MeshFile* const first = index == 0 ? nullptr : &file_;
+  if (!welding_) return ReadMeshFile(paths_[index], {.first = first}, file);
+  SAC_RETURN_IF_ERROR(ReadMeshFile(paths_[index], {.weld = false}, file));
+  if (file.mesh.positions.size() != welding_->vertices().size()) {
+    return Status::InvalidArgument(paths_[index] + ": changed while it was read");
+  }
+  file.mesh.positions = welding_->Gather(file.mesh.positions);
+  if (!file.exact.empty()) file.exact = welding_->Gather(file.exact);
+  file.faces.vertices = welding_->vertices();
+  for (std::size_t j = 0; j < file.corners.size(); ++j) {
+    for (int k = 0; k < 3; ++k) file.mesh.triangles[j][k] = file.faces.vertices[file.corners[j][k]];
+  }
+  return Status::Ok();
+}
+
+void ClipInput::Tell(bool& told, const std::string& warning) {
+  if (!told) warnings_.push_back(warning);
+  told = true;
+}
+
+void ClipInput::TellChanges(const MeshFile& file, const std::string& path) {
+  const Mesh &mesh = file.mesh, &first = file_.mesh;
+  const auto warning = [&](const std::string& what) {
+    return path + ": its " + what + " are not those of " + paths_[0] + ", which every frame gets";
+  };
+  if (mesh.colors != first.colors) Tell(told_colors_, warning("colors"));
+  if (mesh.uvs != first.uvs || mesh.uv_triangles != first.uv_triangles) {
+    Tell(told_uvs_, warning("texture coordinates"));
+  }
+  if (mesh.normals.empty() != first.normals.empty() || mesh.normal_triangles != first.normal_triangles) {
+    Tell(told_normals_, warning("hard edges (corners with normals of their own)"));
+  }
+}
+
+void ClipInput::TellCoarse(const Positions& frame, const std::string& where) {
+  if (told_coarse_) return;
+  if (const double step = CoarseStep(frame); step > 0) {
+    char text[32];
+    std::snprintf(text, sizeof text, "%g", step);
+    Tell(told_coarse_, where + ": so far from the origin float32 has steps of " + text +
+                           "; move the mesh to the origin before the export");
+  }
 }
 
 FrameRate ClipInput::rate() const {
@@ -89,27 +195,36 @@ std::uint32_t ClipInput::frames() const {
   return cache_ ? cache_->frame_count() : static_cast<std::uint32_t>(paths_.size());
 }
 
+Status ClipInput::NextOfSequence(Positions& frame) {
+  const std::string& path = paths_[next_];
+  MeshFile file;
+  SAC_RETURN_IF_ERROR(ReadFrame(next_, file));
+  const Mesh& first = file_.mesh;
+  if (file.mesh.positions.size() != first.positions.size()) {
+    return Status::InvalidArgument(path + ": " + std::to_string(file.mesh.positions.size()) + " vertices, but " +
+                                   paths_[0] + " has " + std::to_string(first.positions.size()));
+  }
+  if (file.faces != file_.faces) {
+    return Status::InvalidArgument(path + ": its faces are not those of " + paths_[0]);
+  }
+  SAC_RETURN_IF_ERROR(CheckPositions(file, path));
+  TellChanges(file, path);
+  frame = Relative(file, offset_);
+  TellCoarse(frame, path);
+  return Status::Ok();
+}
+
 Status ClipInput::Next(Positions& frame, bool& end) {
   end = next_ == frames();
   if (end) return Status::Ok();
   if (next_ == 0) {
-    frame = mesh_.positions;
+    frame = file_.mesh.positions;
   } else if (cache_) {
     SAC_RETURN_IF_ERROR(cache_->Read(next_, frame));
     SAC_RETURN_IF_ERROR(CheckCacheFrame(frame, cache_->path(), next_));
+    Subtract(offset_, frame);
   } else {
-    const std::string& path = paths_[next_];
-    Mesh mesh;
-    SAC_RETURN_IF_ERROR(ReadMesh(path, mesh));
-    if (mesh.positions.size() != mesh_.positions.size()) {
-      return Status::InvalidArgument(path + ": " + std::to_string(mesh.positions.size()) + " vertices, but " +
-                                     paths_[0] + " has " + std::to_string(mesh_.positions.size()));
-    }
-    if (mesh.triangles != mesh_.triangles) {
-      return Status::InvalidArgument(path + ": its triangles are not those of " + paths_[0]);
-    }
-    SAC_RETURN_IF_ERROR(CheckFinite(mesh.positions, path + ": vertex"));
-    frame = std::move(mesh.positions);
+    SAC_RETURN_IF_ERROR(NextOfSequence(frame));
   }
   ++next_;
   return Status::Ok();

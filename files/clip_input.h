@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -9,31 +10,43 @@
 
 #include "files/cache_file.h"
 #include "files/frame_sequence.h"
+#include "files/mesh_file.h"
 #include "files/warnings.h"
+#include "files/welding.h"
 #include "sac/clip.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
 
 namespace sac {
 
+struct ClipInputSettings {
+  Gaps gaps = Gaps::kError;
+  // Reads the whole frames of a cache that is shorter or longer than its header says, instead of refusing it.
+  bool skip_damage = false;
+  // In place of an offset that is chosen, for clips that are compared with another.
+  std::optional<std::array<double, 3>> offset = std::nullopt;
+};
+
 // The encoder's input: the frames of a clip one after the other, each with the vertices of the first and finite.
 // Memory is one frame, whatever their number. Every message starts with the path of the file at fault.
 class ClipInput : public ClipReader {
  public:
-  struct Settings {
-    Gaps gaps = Gaps::kError;
-  };
-
   // `arguments` are `mesh.EXT cache.pc2|.mdd`, or what FindSequence() takes: one or several mesh files, a pattern such
-  // as `frame_%04d.ply`, or a directory. Reads the first frame.
-  static Status Open(const std::vector<std::string>& arguments, const Settings& settings,
-                     std::unique_ptr<ClipInput>& input);
-
-  // What the files hold and the clip does not, so far.
-  const Warnings& warnings() const { return warnings_; }
+  // as `frame_%04d.ply`, or a directory. Reads the first frame; of several STL files all, because corners are one
+  // vertex only if they are at one place in every frame.
+  static Status Open(const std::vector<std::string>& arguments, std::unique_ptr<ClipInput>& input,
+                     const ClipInputSettings& settings = {});
 
   // The first frame: triangles and attributes of the (first) mesh file; with a cache, the positions are the cache's.
-  const Mesh& mesh() const override { return mesh_; }
+  const Mesh& mesh() const override { return file_.mesh; }
+
+  // What the positions of mesh() and of Next are relative to, model units: those of the files are offset() + position.
+  // Other than 0 where the first frame is text or double, and so far from the origin that float32 would round it.
+  const std::array<double, 3>& offset() const { return offset_; }
+
+  // What of the files is not kept, a line each with the path: of the first from the beginning, of later frames what
+  // Next has come upon, once a kind.
+  const Warnings& warnings() const { return warnings_; }
 
   // An MDD has times, from which the rate is derived; other inputs have none.
   FrameRate rate() const override;
@@ -46,21 +59,33 @@ class ClipInput : public ClipReader {
   // The cache, or the frame's own file.
   std::string name_of(std::uint32_t frame) const override { return cache_ ? cache_->path() : paths_[frame]; }
 
-  // kInvalidArgument for another number of vertices, other triangles, or a coordinate that is NaN or infinite.
+  // kInvalidArgument for another number of vertices, other faces, or a coordinate that is NaN or infinite.
   Status Next(Positions& frame, bool& end) override;
   Status Rewind() override;
 
  private:
   Status OpenCache(const std::string& mesh_path, const std::string& cache_path);
   Status OpenSequence();
+  Status WeldSequence();
+  Status ReadFrame(std::uint32_t index, MeshFile& file) const;
+  Status NextOfSequence(Positions& frame);
+
+  // Adds a warning about a frame after the first; `told` remembers that its kind needs no other.
+  void Tell(bool& told, const std::string& warning);
+  void TellChanges(const MeshFile& file, const std::string& path);
+  void TellCoarse(const Positions& frame, const std::string& where);
 
   std::uint32_t frames() const;
 
+  ClipInputSettings settings_;
   std::string name_;
-  Mesh mesh_;
-  Warnings warnings_;
+  MeshFile file_;  // the first; `exact` is given up
+  std::array<double, 3> offset_ = {};
   std::vector<std::string> paths_;  // of a sequence
+  std::optional<Welding> welding_;  // of a sequence of STL files
   std::unique_ptr<CacheReader> cache_;
+  Warnings warnings_;
+  bool told_colors_ = false, told_uvs_ = false, told_normals_ = false, told_coarse_ = false;
   std::uint32_t next_ = 0;
 };
 

@@ -2,7 +2,10 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
+#include "files/faces.h"
+#include "files/warnings.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
 
@@ -14,13 +17,37 @@ namespace sac {
 bool IsReadableMeshName(const std::string& path);
 bool IsWritableMeshName(const std::string& path);
 
-// Reads a mesh with its vertices and faces in the order of the file, none added, dropped or merged (but STL has no
-// vertices of its own: equal positions become one). Polygons become fans (i0, ik, ik+1); faces of fewer than three
-// vertices vanish. Positions are the nearest float32 and may be NaN or infinite. Texture coordinates that several
-// corners share are stored once. On success there is a vertex, every index is in range, and normals and colors are
-// empty or one per vertex.
-// kIoError: not there, not readable; kInvalidArgument: not a mesh file by its name, or empty; kCorrupt and
-// kUnsupported: its content.
+// What a mesh file holds. Vertices and faces are in the order of the file, none added, dropped or merged (but STL has
+// no vertices of its own: corners at equal positions become one).
+struct MeshFile {
+  // Polygons are triangulated, faces of fewer than three vertices vanish. Positions are the nearest float32 and may be
+  // NaN or infinite. There is a vertex, every index is in range, and attributes are empty or complete. Texture
+  // coordinates that several corners share are stored once; normals are per vertex unless corners of a vertex differ,
+  // then an entry serves the corners of one vertex that have that value.
+  Mesh mesh;
+  Faces faces;
+  // The corners of each triangle, as indices of faces.vertices: corners[j][k] belongs to mesh.triangles[j][k].
+  std::vector<Triangle> corners;
+  // Positions as the file has them; empty where it has them in float32, and mesh.positions are all there is.
+  std::vector<Vec3d> exact;
+  // Where the first coordinate that is NaN or infinite stands ("line 7, vertex 2"); empty if all are finite.
+  std::string not_finite;
+  // What the file holds beyond this, and what is likely to be a mistake in it.
+  Warnings warnings;
+};
+
+struct ReadSettings {
+  // The first file of a sequence: where the faces are the same, its triangles are taken, so that they stay the same as
+  // polygons move.
+  const MeshFile* first = nullptr;
+  bool weld = true;  // false: each triangle of an STL file has three vertices of its own
+};
+
+// Reads a mesh file. kIoError: not there, not readable; kInvalidArgument: not a mesh file by its name, or empty;
+// kCorrupt and kUnsupported: its content.
+Status ReadMeshFile(const std::string& path, const ReadSettings& settings, MeshFile& file);
+
+// The mesh of ReadMeshFile alone.
 Status ReadMesh(const std::string& path, Mesh& mesh);
 
 // The bytes of the file that WriteMesh would write to `path`; nothing is written. The mesh must be consistent: indices

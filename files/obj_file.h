@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "files/polygon_mesh.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
 
@@ -14,10 +15,9 @@ namespace sac {
 // opens the material files a mesh names; its writer has no vertex colours and looks corner UVs up by vertex, so
 // a degenerate triangle loses one.
 
-// Parses the text of an OBJ file: v (with an optional colour: r g b, or r g b a), vt, vn and f; other statements are
-// skipped. Polygons become fans. A vertex takes the normal of the first corner that names one. Messages are of the form
-// "line 12: ..." and do not name the file.
-Status ParseObj(std::string_view text, Mesh& mesh);
+// Parses the text of an OBJ file, normalized (NormalizeText): v (with an optional colour: r g b, or r g b a), vt, vn,
+// f. Other statements are counted as losses. Messages are of the form "line 12: ..." and do not name the file.
+Status ParseObj(std::string_view text, PolygonMesh& parsed);
 
 // The text of an OBJ file; every float is written with the digits that bring back the identical float32.
 std::string FormatObj(const Mesh& mesh);

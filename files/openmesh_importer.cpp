@@ -4,8 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
-
-#include "files/uv_table.h"
+#include <utility>
 
 namespace sac {
 
@@ -83,50 +82,33 @@ Status MeshImporter::CheckIndices() const {
   return Status::Ok();
 }
 
-void MeshImporter::FinishUvs(Mesh& mesh) const {
-  OpenMesh::FPropHandleT<std::vector<float>> texcoord;  // u, v per corner, as MeshLab writes it
-  const bool wedges = kernel_.get_property_handle(texcoord, "texcoord");
-  if (!wedges && corner_uvs_.empty() && vertex_uvs_.empty()) return;
-
-  UvTable table;
-  std::vector<std::uint32_t> fan;
-  for (std::size_t face = 0, begin = 0; face < face_ends_.size(); begin = face_ends_[face++]) {
-    const std::size_t count = face_ends_[face] - begin;
-    if (count < 3) continue;
-    fan.clear();
-    for (std::size_t k = 0; k < count; ++k) {
-      std::array<float, 2> uv{};
-      if (wedges) {
-        const auto& list = kernel_.property(texcoord, FaceHandle(static_cast<int>(face)));
-        if (list.size() == 2 * count) uv = {list[2 * k], list[2 * k + 1]};
-      } else if (!corner_uvs_.empty()) {
-        uv = corner_uvs_[begin + k];
-      } else if (const auto v = static_cast<std::size_t>(corners_[begin + k]); v < vertex_uvs_.size()) {
-        uv = vertex_uvs_[v];
-      }
-      fan.push_back(table.Index(uv));
-    }
-    for (std::size_t k = 1; k + 1 < count; ++k) mesh.uv_triangles.push_back({fan[0], fan[k], fan[k + 1]});
+void MeshImporter::FinishUvs(PolygonMesh& parsed) {
+  if (!corner_uvs_.empty()) {
+    parsed.uvs = std::move(corner_uvs_);
+    for (std::uint32_t k = 0; k < parsed.uvs.size(); ++k) parsed.corner_uvs.push_back(k);
+  } else if (!vertex_uvs_.empty()) {
+    parsed.uvs = std::move(vertex_uvs_);
+    parsed.uvs.resize(positions_.size());
+    parsed.corner_uvs = parsed.faces.vertices;
   }
-  mesh.uvs = table.Take();
 }
 
-Status MeshImporter::Finish(Mesh& mesh) {
+Status MeshImporter::Finish(PolygonMesh& parsed) {
   SAC_RETURN_IF_ERROR(WalkFaces());
   SAC_RETURN_IF_ERROR(CheckIndices());
-  mesh = {};
-  for (std::size_t face = 0, begin = 0; face < face_ends_.size(); begin = face_ends_[face++]) {
-    for (std::size_t k = begin + 1; k + 1 < face_ends_[face]; ++k) {
-      mesh.triangles.push_back({static_cast<std::uint32_t>(corners_[begin]), static_cast<std::uint32_t>(corners_[k]),
-                                static_cast<std::uint32_t>(corners_[k + 1])});
-    }
+  for (std::size_t face = 0, k = 0; face < face_ends_.size(); ++face) {
+    for (; k < face_ends_[face]; ++k) parsed.faces.vertices.push_back(static_cast<std::uint32_t>(corners_[k]));
+    SAC_RETURN_IF_ERROR(parsed.EndFace());
   }
-  FinishUvs(mesh);
+  FinishUvs(parsed);
+  for (std::size_t v = 0; v < positions_.size(); ++v) {
+    const Vec3f& p = positions_[v];
+    parsed.AddPosition({p[0], p[1], p[2]}, [v] { return "vertex " + std::to_string(v); });
+  }
   if (!normals_.empty()) normals_.resize(positions_.size());
   if (!colors_.empty()) colors_.resize(positions_.size(), {255, 255, 255, 255});
-  mesh.positions = std::move(positions_);
-  mesh.normals = std::move(normals_);
-  mesh.colors = std::move(colors_);
+  parsed.normals = std::move(normals_);
+  parsed.colors = std::move(colors_);
   return Status::Ok();
 }
 

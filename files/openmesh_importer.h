@@ -8,13 +8,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "files/polygon_mesh.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
 
 namespace sac {
 
-// Receives what OpenMesh's readers find and keeps it as lists: no half-edge structure is built, so non-manifold edges,
-// degenerate and duplicate faces and isolated vertices all stay, in the order of the file.
+// Receives what OpenMesh's reader of OM finds and keeps it as lists: no half-edge structure is built, so non-manifold
+// edges, degenerate and duplicate faces and isolated vertices all stay, in the order of the file.
 class MeshImporter final : public OpenMesh::IO::BaseImporter {
  public:
   using VertexHandle = OpenMesh::VertexHandle;
@@ -29,8 +30,8 @@ class MeshImporter final : public OpenMesh::IO::BaseImporter {
   using Rgb = OpenMesh::Vec3uc;
   using Rgba = OpenMesh::Vec4uc;
 
-  // Turns what was read into `mesh`, with polygons as fans; fails if an index is out of range.
-  Status Finish(Mesh& mesh);
+  // Moves what was read into `parsed`; fails if an index is out of range.
+  Status Finish(PolygonMesh& parsed);
 
   VertexHandle add_vertex(const Point& point) override;
   VertexHandle add_vertex() override { return add_vertex(Point(0, 0, 0)); }
@@ -53,7 +54,7 @@ class MeshImporter final : public OpenMesh::IO::BaseImporter {
   void set_texcoord(HalfedgeHandle h, const Vec2f& uv) override;
   void set_texcoord(HalfedgeHandle h, const Point& uvw) override { set_texcoord(h, Vec2f(uvw[0], uvw[1])); }
 
-  // The PLY reader stores properties that it does not know there.
+  // The reader stores custom properties there.
   OpenMesh::BaseKernel* kernel() override { return &kernel_; }
 
   std::size_t n_vertices() const override { return positions_.size(); }
@@ -105,7 +106,7 @@ class MeshImporter final : public OpenMesh::IO::BaseImporter {
   }
   Status WalkFaces();
   Status CheckIndices() const;
-  void FinishUvs(Mesh& mesh) const;
+  void FinishUvs(PolygonMesh& parsed);
 
   Positions positions_;
   std::vector<Vec3f> normals_;

@@ -2,10 +2,9 @@
 #include "files/stl_file.h"
 
 #include <array>
-#include <bit>
+#include <cmath>
 #include <cstdint>
-#include <string>
-#include <unordered_map>
+#include <string_view>
 
 #include "files/byte_order.h"
 #include "files/text_scan.h"
@@ -16,54 +15,50 @@ namespace {
 constexpr std::size_t kHeaderBytes = 84;    // text, then the number of triangles
 constexpr std::size_t kTriangleBytes = 50;  // normal, three corners, two bytes of attributes
 
-class Welder {
- public:
-  explicit Welder(Mesh& mesh) : mesh_(mesh) {}
-
-  void Add(const std::array<Vec3f, 3>& corners) {
-    mesh_.triangles.push_back({Index(corners[0]), Index(corners[1]), Index(corners[2])});
+Status EndTriangle(PolygonMesh& parsed) {
+  for (std::size_t k = 3; k > 0; --k) {
+    parsed.faces.vertices.push_back(static_cast<std::uint32_t>(parsed.positions.size() - k));
   }
+  return parsed.EndFace();
+}
 
- private:
-  using Key = std::array<std::uint32_t, 3>;
-  struct Hash {
-    std::size_t operator()(const Key& key) const {
-      std::uint64_t hash = 0;
-      for (const std::uint32_t x : key) hash = (hash ^ x) * 0x9E3779B97F4A7C15U;
-      return hash ^ hash >> 32;
-    }
-  };
-
-  std::uint32_t Index(const Vec3f& position) {
-    Key key{};
-    for (int k = 0; k < 3; ++k) key[k] = std::bit_cast<std::uint32_t>(position[k] == 0 ? 0.0F : position[k]);
-    const auto [found, added] = index_.try_emplace(key, static_cast<std::uint32_t>(mesh_.positions.size()));
-    if (added) mesh_.positions.push_back(position);
-    return found->second;
-  }
-
-  Mesh& mesh_;
-  std::unordered_map<Key, std::uint32_t, Hash> index_;
-};
-
-void ParseBinary(std::string_view bytes, Mesh& mesh) {
-  Welder welder(mesh);
+Status ParseBinary(std::string_view bytes, PolygonMesh& parsed) {
+  std::uint64_t attributes = 0;
   for (std::size_t at = kHeaderBytes; at < bytes.size(); at += kTriangleBytes) {
-    std::array<Vec3f, 3> corners{};
     const char* in = bytes.data() + at + 12;
-    for (Vec3f& corner : corners) {
-      for (float& x : corner) {
+    for (int corner = 0; corner < 3; ++corner) {
+      Vec3d position{};
+      for (double& x : position) {
         x = LoadLittleFloat(in);
         in += 4;
       }
+      parsed.AddPosition(position, [&] {
+        return "triangle " + std::to_string(parsed.faces.size()) + ", corner " + std::to_string(corner);
+      });
     }
-    welder.Add(corners);
+    attributes += in[0] != 0 || in[1] != 0 ? 1 : 0;
+    SAC_RETURN_IF_ERROR(EndTriangle(parsed));
   }
+  parsed.losses.Count("attribute bytes or colors of triangles", attributes);
+  return Status::Ok();
 }
 
-Status ParseAscii(std::string_view text, Mesh& mesh) {
-  Welder welder(mesh);
-  std::array<Vec3f, 3> corners{};
+Status ParseVertex(std::string_view line, std::size_t line_number, PolygonMesh& parsed) {
+  Vec3d position{};
+  std::string_view not_finite;
+  for (double& x : position) {
+    const std::string_view word = TakeWord(line);
+    if (!ParseDouble(word, x)) return NotANumber(word);
+    if (!std::isfinite(static_cast<float>(x))) not_finite = word;
+  }
+  parsed.AddPosition(position, [&] {
+    return "line " + std::to_string(line_number) + ", triangle " + std::to_string(parsed.faces.size()) + ": " +
+           std::string(not_finite);
+  });
+  return Status::Ok();
+}
+
+Status ParseAscii(std::string_view text, PolygonMesh& parsed) {
   std::size_t corner_count = 0, line_number = 0;
   bool ended = false;
   const auto error = [&](const std::string& what) {
@@ -75,40 +70,38 @@ Status ParseAscii(std::string_view text, Mesh& mesh) {
     const std::string_view keyword = TakeWord(line);
     if (keyword == "vertex" || keyword == "VERTEX") {
       if (corner_count == 3) return error("a facet of more than three vertices");
-      for (float& x : corners[corner_count]) {
-        const std::string_view word = TakeWord(line);
-        if (!ParseFloat(word, x)) return error("not a number: " + std::string(word));
-      }
+      if (const Status status = ParseVertex(line, line_number, parsed); !status.ok()) return error(status.message());
       ++corner_count;
     } else if (keyword == "endfacet" || keyword == "ENDFACET") {
       if (corner_count != 3) return error("a facet of " + std::to_string(corner_count) + " vertices");
-      welder.Add(corners);
+      SAC_RETURN_IF_ERROR(EndTriangle(parsed));
       corner_count = 0;
     } else if (keyword == "endsolid" || keyword == "ENDSOLID") {
       ended = true;
+      ++parsed.objects;
     } else if (keyword == "facet" || keyword == "FACET") {
       ended = false;
     }
   }
+  parsed.wide = true;
   return ended && corner_count == 0 ? Status::Ok() : Status::Corrupt("ends before endsolid");
 }
 
 }  // namespace
 
-Status ParseStl(std::string_view bytes, Mesh& mesh) {
-  mesh = {};
+Status ParseStl(std::string& bytes, PolygonMesh& parsed) {
+  parsed = {};
   // An ASCII file may start with any text and a binary one with "solid", so the size decides.
   const std::uint64_t count = bytes.size() < kHeaderBytes ? 0 : LoadLittle32(bytes.data() + kHeaderBytes - 4);
   const std::uint64_t whole = kHeaderBytes + count * kTriangleBytes;
-  if (bytes.size() == whole) {
-    ParseBinary(bytes, mesh);
-    return Status::Ok();
-  }
-  std::string_view start = bytes.substr(0, kHeaderBytes);
+  if (bytes.size() == whole) return ParseBinary(bytes, parsed);
+  const std::size_t size = bytes.size();
+  SAC_RETURN_IF_ERROR(NormalizeText(bytes));
+  std::string_view start = std::string_view(bytes).substr(0, kHeaderBytes);
   const std::string_view first = TakeWord(start);
-  if (first == "solid" || first == "SOLID") return ParseAscii(bytes, mesh);
+  if (first == "solid" || first == "SOLID") return ParseAscii(bytes, parsed);
   return Status::Corrupt("neither ASCII STL nor binary STL of " + std::to_string(count) + " triangles, which takes " +
-                         std::to_string(whole) + " bytes and not " + std::to_string(bytes.size()));
+                         std::to_string(whole) + " bytes and not " + std::to_string(size));
 }
 
 }  // namespace sac

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <charconv>
 #include <cstdint>
+#include <string>
 #include <string_view>
-#include <system_error>
+
+#include "sac/status.h"
 
 namespace sac {
 
@@ -31,26 +32,25 @@ inline std::string_view TakeWord(std::string_view& text) {
   return word;
 }
 
-// The whole of `word` as the nearest float32; "nan" and "inf" are numbers here. False if it is none.
-inline bool ParseFloat(std::string_view word, float& value) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  const char* end = word.data() + word.size();
-  auto result = std::from_chars(word.data(), end, value);
-  if (result.ec == std::errc::result_out_of_range) {
-    // Too small or too large for a float: the conversion from double gives a zero or an infinity.
-    double wide = 0;
-    result = std::from_chars(word.data(), end, wide);
-    value = static_cast<float>(wide);
-  }
-  return result.ec == std::errc() && result.ptr == end;
-}
+// The whole of `word` as the nearest float32. "nan" and "inf" are numbers here, and so are the
+// spellings 1.#IND, 1.#QNAN and 1.#INF of older C libraries; what is too large is infinite. False if it is none.
+bool ParseFloat(std::string_view word, float& value);
+
+// As ParseFloat, in double. Where the nearest double lies in the middle of two float32 and `word` does not, `value` is
+// the double beside it, so that rounding it to float32 gives the float32 nearest to `word`.
+bool ParseDouble(std::string_view word, double& value);
 
 // The whole of `word` as a decimal integer; false if it is none.
-inline bool ParseInteger(std::string_view word, std::int64_t& value) {
-  if (!word.empty() && word.front() == '+') word.remove_prefix(1);
-  const char* end = word.data() + word.size();
-  const auto result = std::from_chars(word.data(), end, value);
-  return result.ec == std::errc() && result.ptr == end;
-}
+bool ParseInteger(std::string_view word, std::int64_t& value);
+
+// The error for a word that is no number; says so if it has a decimal comma.
+Status NotANumber(std::string_view word);
+
+// Makes `text` UTF-8 without a byte order mark and with lines that end in '\n' alone, whichever of CR, CRLF, VT, FF,
+// NEL (U+0085), LS (U+2028) and PS (U+2029) ended them. kUnsupported for UTF-16, which a byte order mark tells.
+Status NormalizeText(std::string& text);
+
+// The line, from 1, that `at` is in; `text` is normalized.
+std::size_t LineNumber(std::string_view text, std::size_t at);
 
 }  // namespace sac

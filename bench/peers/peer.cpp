@@ -44,7 +44,7 @@ bool ParseArguments(std::vector<std::string> words, Arguments& a) {
 
 Status ReadClip(const Arguments& arguments, Clip& clip) {
   std::unique_ptr<ClipInput> input;
-  SAC_RETURN_IF_ERROR(ClipInput::Open({arguments.mesh, arguments.clip}, {}, input));
+  SAC_RETURN_IF_ERROR(ClipInput::Open({arguments.mesh, arguments.clip}, input));
   clip.mesh.triangles = input->mesh().triangles;
   for (bool end = false;;) {
     Positions frame;

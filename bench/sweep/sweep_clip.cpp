@@ -54,7 +54,7 @@ std::vector<std::vector<std::string>> ClipsOf(const std::vector<std::string>& in
 
 Status PrepareClip(const std::vector<std::string>& inputs, const std::string& directory, SweepClip& clip) {
   std::unique_ptr<ClipInput> input;
-  SAC_RETURN_IF_ERROR(ClipInput::Open(inputs, {}, input));
+  SAC_RETURN_IF_ERROR(ClipInput::Open(inputs, input));
   const Mesh mesh = GeometryOf(input->mesh());
   clip.name = NameOf(inputs.front());
   clip.frames = *input->frame_count();

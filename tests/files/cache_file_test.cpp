@@ -59,7 +59,7 @@ TEST_F(CacheFileTest, EveryOtherLengthFails) {
     }
     EXPECT_EQ(Error(name, *cache), "");
     EXPECT_EQ(Error(name, *cache + "x"),
-              name + ": header says 2 frames of 2 points, but the file has 2 frames and 1 bytes");
+              name + ": header says 2 frames of 2 points, but the file has 2 whole frames and 1 bytes");
   }
 }
 
@@ -76,9 +76,9 @@ TEST_F(CacheFileTest, HeaderErrors) {
   EXPECT_EQ(Error("a.pc2", with(kPc2, 28, zero)), "a.pc2: no frames");
   // The product of these overflows 64 bits.
   EXPECT_EQ(Error("a.pc2", with(with(kPc2, 16, huge), 28, huge)),
-            "a.pc2: header says 2147483647 frames of 2147483647 points, but the file has 0 frames and 48 bytes");
+            "a.pc2: header says 2147483647 frames of 2147483647 points, but the file has 0 whole frames and 48 bytes");
   EXPECT_EQ(Error("a.mdd", with(kMdd, 0, huge_big + huge_big)),
-            "a.mdd: header says 2147483647 frames of 2147483647 points, but the file has 0 frames and 0 bytes");
+            "a.mdd: header says 2147483647 frames of 2147483647 points, but the file has 0 whole frames and 0 bytes");
   EXPECT_EQ(Error("a.mdd", with(kMdd, 0, minus_one)), "a.mdd: header says -1 frames of 2 points");
   EXPECT_EQ(Error("a.mdd", with(kMdd, 0, zero)), "a.mdd: no frames");
   EXPECT_EQ(Error("a.abc", kPc2), "a.abc: not a cache by its name (.pc2, .mdd)");

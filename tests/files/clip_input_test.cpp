@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "tests/test_directory.h"
+#include "tests/files/clip_files.h"
 
 namespace sac {
 namespace {
@@ -13,36 +13,16 @@ namespace {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 const std::string kFace = "f 1 2 3\n";
 
-class ClipInputTest : public testing::Test {
+class ClipInputTest : public ClipFileTest {
  protected:
-  std::string WriteObj(const std::string& name, float x, const std::string& faces = kFace, int vertices = 3) {
-    std::string obj;
-    for (int i = 0; i < vertices; ++i) obj += "v " + std::to_string(x) + " " + std::to_string(i) + " 0\n";
-    return directory_.Write(name, obj + faces);
-  }
-
-  std::string WriteCache(const std::string& name, const std::vector<Positions>& frames) {
-    std::unique_ptr<CacheWriter> writer;
-    EXPECT_TRUE(CacheWriter::Open(directory_.Path(name), frames[0].size(), 25, std::nullopt, writer).ok());
-    for (const Positions& frame : frames) EXPECT_TRUE(writer->Write(frame).ok());
-    EXPECT_TRUE(writer->Commit().ok());
-    return directory_.Path(name);
-  }
-
   // Opens and reads to the end; x of vertex 0 of every frame goes to `xs`. The message, without the directory, or "".
   std::string ReadAll(const std::vector<std::string>& arguments, std::vector<float>& xs) {
-    const auto message = [this](const Status& status) {
-      std::string text = status.message();
-      const std::string prefix = directory_.Path("");
-      for (auto at = text.find(prefix); at != std::string::npos; at = text.find(prefix)) text.erase(at, prefix.size());
-      return text;
-    };
     std::unique_ptr<ClipInput> input;
-    if (const Status status = ClipInput::Open(arguments, {}, input); !status.ok()) return message(status);
+    if (const Status status = ClipInput::Open(arguments, input); !status.ok()) return Short(status.message());
     xs.clear();
     Positions frame;
     for (bool end = false; true;) {
-      if (const Status status = input->Next(frame, end); !status.ok()) return message(status);
+      if (const Status status = input->Next(frame, end); !status.ok()) return Short(status.message());
       if (end) return "";
       xs.push_back(frame[0][0]);
     }
@@ -51,15 +31,13 @@ class ClipInputTest : public testing::Test {
     std::vector<float> xs;
     return ReadAll(arguments, xs);
   }
-
-  TestDirectory directory_;
 };
 
 TEST_F(ClipInputTest, CacheGivesPositionsAndMeshTheRest) {
   const std::string obj = WriteObj("a.obj", 99, "vt 0.5 1\nf 1/1 2/1 3/1\n");
   const std::string mdd = WriteCache("a.mdd", {Positions(3, {1, 0, 0}), Positions(3, {2, 0, 0})});
   std::unique_ptr<ClipInput> input;
-  ASSERT_TRUE(ClipInput::Open({obj, mdd}, {}, input).ok());
+  ASSERT_TRUE(ClipInput::Open({obj, mdd}, input).ok());
   EXPECT_EQ(input->mesh().positions[0][0], 1);
   EXPECT_EQ(input->mesh().uvs.size(), 1U);
   EXPECT_EQ(input->rate().per_second(), 25);
@@ -116,10 +94,10 @@ TEST_F(ClipInputTest, Sequences) {
 TEST_F(ClipInputTest, SequenceErrors) {
   const std::string first = WriteObj("f0.obj", 0);
   EXPECT_EQ(ReadAll({first, WriteObj("f1.obj", 0, kFace, 4)}), "f1.obj: 4 vertices, but f0.obj has 3");
-  EXPECT_EQ(ReadAll({first, WriteObj("f1.obj", 0, "f 1 3 2\n")}), "f1.obj: its triangles are not those of f0.obj");
+  EXPECT_EQ(ReadAll({first, WriteObj("f1.obj", 0, "f 1 3 2\n")}), "f1.obj: its faces are not those of f0.obj");
   EXPECT_EQ(ReadAll({first, directory_.Write("f1.obj", "v 0 0 0\nv 0 inf 0\nv 0 0 0\n" + kFace)}),
-            "f1.obj: vertex 1: not a finite number");
-  EXPECT_EQ(ReadAll({directory_.Path("f1.obj")}), "f1.obj: vertex 1: not a finite number");
+            "f1.obj: line 2, vertex 1: inf: not a finite number");
+  EXPECT_EQ(ReadAll({directory_.Path("f1.obj")}), "f1.obj: line 2, vertex 1: inf: not a finite number");
   EXPECT_EQ(ReadAll({directory_.Write("n.obj", "v 0 0 0\nvn 0 0 nan\nvt nan\nf 1/1/1 1/1/1 1/1/1\n")}),
             "n.obj: normal 0: not a finite number");
   EXPECT_EQ(ReadAll({directory_.Write("t.obj", "v 0 0 0\nvt nan\nf 1/1 1/1 1/1\n")}),

@@ -58,7 +58,7 @@ TEST_F(ClipOutputTest, CacheWithItsMesh) {
     EXPECT_FALSE(std::filesystem::exists(path) || std::filesystem::exists(obj));
     ASSERT_TRUE(output_->Commit().ok());
     std::unique_ptr<ClipInput> input;
-    ASSERT_TRUE(ClipInput::Open({obj, path}, {}, input).ok());
+    ASSERT_TRUE(ClipInput::Open({obj, path}, input).ok());
     EXPECT_EQ(input->frame_count(), 2U);
     Mesh mesh;
     ASSERT_TRUE(ReadMesh(obj, mesh).ok());

@@ -34,6 +34,19 @@ class MeshFileTest : public testing::Test {
     return mesh;
   }
 
+  // What ReadMeshFile gives, with warnings without the directory.
+  MeshFile ReadFile(const std::string& name, const std::string& bytes, const ReadSettings& settings = {}) {
+    MeshFile file;
+    const Status status = ReadMeshFile(directory_.Write(name, bytes), settings, file);
+    EXPECT_TRUE(status.ok()) << status.message();
+    for (std::string& warning : file.warnings) {
+      EXPECT_EQ(warning.rfind(directory_.Path(name) + ": ", 0), 0U) << warning;
+      EXPECT_EQ(warning.find('\n'), std::string::npos);
+      warning.erase(0, directory_.Path("").size());
+    }
+    return file;
+  }
+
   // The error message without the directory.
   std::string Error(const std::string& name, const std::string& bytes) {
     Mesh mesh;
