@@ -78,13 +78,15 @@ TEST_F(WarningsTest, NumbersOfASequence) {
   EXPECT_TRUE(std::filesystem::exists(Path("g_101.obj")) && std::filesystem::exists(Path("g_102.obj")));
 }
 
-// Two triangles meet at two points that are there twice. They turn against each other about the line between them.
+// Two squares meet at two points that are there twice. They turn against each other about the line between them.
 TEST_F(WarningsTest, SeamsThatOpen) {
-  directory_.Write("seam.obj", "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 0 0 0\nv 0 1 0\nv -1 0 0\nf 1 2 3\nf 4 6 5\n");
+  directory_.Write("seam.obj",
+                   "v 0 0 0\nv 0 1 0\nv 1 0 0\nv 1 1 0\nv 0 0 0\nv 0 1 0\nv -1 0 0\nv -1 1 0\n"
+                   "f 1 3 2\nf 2 3 4\nf 5 6 7\nf 6 8 7\n");
   std::vector<Positions> frames;
   for (int t = 0; t < 8; ++t) {
     const float x = std::cos(0.2F * static_cast<float>(t)), z = std::sin(0.2F * static_cast<float>(t));
-    frames.push_back({{0, 0, 0}, {0, 1, 0}, {x, 0, z}, {0, 0, 0}, {0, 1, 0}, {-x, 0, z}});
+    frames.push_back({{0, 0, 0}, {0, 1, 0}, {x, 0, z}, {x, 1, z}, {0, 0, 0}, {0, 1, 0}, {-x, 0, z}, {-x, 1, z}});
   }
   WriteCache("seam.pc2", frames);
   const std::vector<std::string> encode{
@@ -124,11 +126,9 @@ TEST_F(WarningsTest, QualitiesThatMissWhatTheyStandFor) {
   ASSERT_TRUE(CacheReader::Open(Path("in.pc2"), reader).ok());
   std::vector<Positions> frames(2);
   std::uint32_t state = 1;
-  for (Positions& frame : frames) {
-    ASSERT_TRUE(reader->Read(0, frame).ok());
-    for (Vec3f& p : frame) {
-      for (float& x : p) x += static_cast<float>((state = state * 1664525 + 1013904223) >> 8) * 0x1p-24F;
-    }
+  for (Positions& frame : frames) ASSERT_TRUE(reader->Read(0, frame).ok());
+  for (Vec3f& p : frames[1]) {
+    for (float& x : p) x += static_cast<float>((state = state * 1664525 + 1013904223) >> 8) * 0x1p-24F;
   }
   WriteCache("noise.pc2", frames);
   const std::string told = Told({"encode", "in.obj", "noise.pc2", "-o", "noise.sac", "--quality", "20"});
