@@ -2,8 +2,11 @@
 #include "files/clip_output.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <filesystem>
 #include <map>
+#include <sstream>
 #include <utility>
 
 #include "files/mesh_file.h"
@@ -22,6 +25,10 @@ Status ClipOutput::Open(const std::string& path, const Mesh& mesh, const Setting
   opened->path_ = path;
   opened->mesh_ = mesh;
   opened->force_ = settings.force;
+  opened->normals_.emplace(mesh);
+  if (!mesh.normals.empty()) opened->mesh_.normal_triangles = opened->normals_->normal_triangles();
+  opened->offset_ = settings.offset;
+  opened->precision_ = settings.precision;
   if (IsCacheName(path)) {
     SAC_RETURN_IF_ERROR(
         CacheWriter::Open(path, mesh.positions.size(), settings.fps, settings.frame_count, opened->cache_));
@@ -37,9 +44,12 @@ Status ClipOutput::Open(const std::string& path, const Mesh& mesh, const Setting
 
 Status ClipOutput::WriteMeshFile(const std::string& path, const Positions& positions, bool named) {
   mesh_.positions = positions;
+  mesh_.normals = normals_->Compute(positions);
   std::string bytes;
-  SAC_RETURN_IF_ERROR(FormatMesh(path, mesh_, bytes));
+  Warnings warnings;
+  SAC_RETURN_IF_ERROR(FormatMesh(path, mesh_, offset_, bytes, warnings));
   if (!named && !force_) SAC_RETURN_IF_ERROR(CheckUnnamed(path, bytes));
+  if (mesh_warnings_.empty()) mesh_warnings_ = std::move(warnings);
   OutputFile file;
   SAC_RETURN_IF_ERROR(file.Open(path));
   SAC_RETURN_IF_ERROR(file.Write(bytes));
@@ -67,7 +77,35 @@ Status ClipOutput::Write(std::uint64_t number, const Positions& positions) {
     SAC_RETURN_IF_ERROR(
         WriteMeshFile(std::filesystem::path(path_).replace_extension(".obj").string(), positions, false));
   }
-  return cache_->Write(positions);
+  return WriteToCache(number, positions);
+}
+
+Status ClipOutput::WriteToCache(std::uint64_t number, const Positions& positions) {
+  if (offset_ == std::array<double, 3>{}) return cache_->Write(positions);
+  Positions moved = positions;
+  for (std::size_t v = 0; v < moved.size(); ++v) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      const double sum = offset_[a] + static_cast<double>(positions[v][a]);
+      moved[v][a] = static_cast<float>(sum);
+      if (!std::isfinite(moved[v][a])) {
+        return Status::InvalidArgument(path_ + ": frame " + std::to_string(number) + ": vertex " + std::to_string(v) +
+                                       " is beyond the range of the format's 32-bit floats; meshes (.obj) hold it");
+      }
+      largest_rounding_ = std::max(largest_rounding_, std::abs(static_cast<double>(moved[v][a]) - sum));
+    }
+  }
+  return cache_->Write(moved);
+}
+
+Warnings ClipOutput::warnings() const {
+  Warnings warnings = mesh_warnings_;
+  if (largest_rounding_ > precision_) {
+    std::ostringstream text;
+    text << path_ << ": the format's 32-bit floats round the coordinates by up to " << largest_rounding_
+         << "; meshes (.obj, .ply, .off) hold them exactly";
+    warnings.push_back(text.str());
+  }
+  return warnings;
 }
 
 std::string ClipOutput::StaleFrames() const {

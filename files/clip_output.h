@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <optional>
@@ -10,6 +11,8 @@
 #include "files/cache_file.h"
 #include "files/frame_pattern.h"
 #include "files/output_file.h"
+#include "files/warnings.h"
+#include "sac/frame_normals.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
 
@@ -24,6 +27,10 @@ class ClipOutput {
     double fps = 24;                           // frames a second, for the times of an MDD
     std::optional<std::uint32_t> frame_count;  // where known; see CacheWriter::Open
     bool force = false;                        // replace the mesh beside a cache
+    // Is added to all positions, model units. Mesh files hold the sum in double precision, caches the nearest float.
+    std::array<double, 3> offset = {};
+    // The largest error of that rounding that needs no warning, model units.
+    double precision = 0;
   };
 
   // True if `path` is, by its name, a clip output.
@@ -33,26 +40,36 @@ class ClipOutput {
   // none, and for what is no sequence.
   std::string StaleFrames() const;
 
-  // `mesh` gives triangles and attributes; only the number of its positions matters.
+  // `mesh` gives triangles and attributes. If it has normals, they are those of its positions.
   static Status Open(const std::string& path, const Mesh& mesh, const Settings& settings,
                      std::unique_ptr<ClipOutput>& output);
 
-  // Appends a frame. `number` names its file in a sequence; a cache has no numbers. Normals are those of the mesh, for
-  // every frame. The mesh beside a cache has no name of the user's: kInvalidArgument if another is there, unless
-  // settings.force.
+  // Appends a frame. `number` names its file in a sequence; a cache has no numbers. Every mesh file has the normals of
+  // its frame, carried over from the mesh (sac/frame_normals.h). kInvalidArgument where a cache cannot hold a
+  // coordinate, and where another mesh is there beside a cache, which the user has not named, unless settings.force.
   Status Write(std::uint64_t number, const Positions& positions);
 
   // Gives all files their names. kInvalidArgument if there was no frame.
   Status Commit();
 
+  // What the files written so far do not hold of the clip; each kind is told of the first file alone.
+  Warnings warnings() const;
+
  private:
   // `named`: whether the user has named the file.
   Status WriteMeshFile(const std::string& path, const Positions& positions, bool named);
+
+  Status WriteToCache(std::uint64_t number, const Positions& positions);
 
   std::string path_;
   Mesh mesh_;
   bool force_ = false;
   std::int64_t last_number_ = -1;
+  std::optional<FrameNormals> normals_;
+  std::array<double, 3> offset_ = {};
+  double precision_ = 0;
+  double largest_rounding_ = 0;  // of a coordinate in the cache, model units
+  Warnings mesh_warnings_;       // of the first mesh file
   std::optional<FramePattern> pattern_;
   std::unique_ptr<CacheWriter> cache_;
   std::vector<OutputFile> mesh_files_;  // written and closed, under temporary names

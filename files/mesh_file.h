@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <vector>
 
@@ -50,13 +51,18 @@ Status ReadMeshFile(const std::string& path, const ReadSettings& settings, MeshF
 // The mesh of ReadMeshFile alone.
 Status ReadMesh(const std::string& path, Mesh& mesh);
 
-// The bytes of the file that WriteMesh would write to `path`; nothing is written. The mesh must be consistent: indices
-// in range, attributes empty or complete. Positions come back from ReadMesh as the identical float32. Normals and
-// colours are carried by all three formats, texture coordinates with seams only by OBJ: PLY and OFF have one per
-// vertex, and are written without any if a vertex needs two.
-Status FormatMesh(const std::string& path, const Mesh& mesh, std::string& bytes);
+// The bytes of a file named `path`; nothing is written. The mesh must be consistent: indices in range, attributes empty
+// or complete. Positions come back from ReadMesh as the identical float32. Colours are carried by all three formats,
+// texture coordinates and normals of corners only by OBJ: PLY and OFF have one of each per vertex, and are written
+// without any if a vertex needs two, without normals with a warning.
+//
+// `offset` is added to the positions, model units. Where it is not zero all three formats hold the sum in double
+// precision, PLY as properties of type double.
+Status FormatMesh(const std::string& path, const Mesh& mesh, const std::array<double, 3>& offset, std::string& bytes,
+                  Warnings& warnings);
 
-// Writes a mesh file, whole or not at all.
+// Writes a mesh file, whole or not at all, without an offset. Normals that it cannot hold are left out, as FormatMesh()
+// says.
 Status WriteMesh(const std::string& path, const Mesh& mesh);
 
 }  // namespace sac

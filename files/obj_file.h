@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <string>
 #include <string_view>
 
@@ -19,7 +20,8 @@ namespace sac {
 // f. Other statements are counted as losses. Messages are of the form "line 12: ..." and do not name the file.
 Status ParseObj(std::string_view text, PolygonMesh& parsed);
 
-// The text of an OBJ file; every float is written with the digits that bring back the identical float32.
-std::string FormatObj(const Mesh& mesh);
+// The text of an OBJ file. Positions are written with `offset` added, model units. Every number is written with the
+// digits that bring back the identical float32, and coordinates that the offset has moved the identical double.
+std::string FormatObj(const Mesh& mesh, const std::array<double, 3>& offset = {});
 
 }  // namespace sac

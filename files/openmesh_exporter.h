@@ -6,6 +6,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 #include "sac/mesh.h"
@@ -29,11 +30,18 @@ class MeshExporter final : public OpenMesh::IO::BaseExporter {
   using Vec3ui = OpenMesh::Vec3ui;
   using Vec4ui = OpenMesh::Vec4ui;
 
-  explicit MeshExporter(const Mesh& mesh) : mesh_(mesh) { FindVertexUvs(); }
+  explicit MeshExporter(const Mesh& mesh) : mesh_(mesh) {
+    if (!mesh.uvs.empty()) AtVertices(mesh.uvs, mesh.uv_triangles, vertex_uvs_);
+    if (mesh.normal_triangles.empty()) {
+      vertex_normals_ = mesh.normals;
+    } else {
+      AtVertices(mesh.normals, mesh.normal_triangles, vertex_normals_);
+    }
+  }
 
   Point point(VertexHandle v) const override { return Point(mesh_.positions[v.idx()].data()); }
   Vec3d pointd(VertexHandle v) const override { return Vec3d(point(v)); }
-  Point normal(VertexHandle v) const override { return Point(mesh_.normals[v.idx()].data()); }
+  Point normal(VertexHandle v) const override { return Point(vertex_normals_[v.idx()].data()); }
   Vec3d normald(VertexHandle v) const override { return Vec3d(normal(v)); }
   Vec4uc colorA(VertexHandle v) const override { return Vec4uc(mesh_.colors[v.idx()].data()); }
   Vec3uc color(VertexHandle v) const override { return Vec3uc(mesh_.colors[v.idx()].data()); }
@@ -53,9 +61,9 @@ class MeshExporter final : public OpenMesh::IO::BaseExporter {
   std::size_t n_faces() const override { return mesh_.triangles.size(); }
   std::size_t n_edges() const override { return 0; }
   bool is_triangle_mesh() const override { return true; }
-  bool has_vertex_normals() const override { return !mesh_.normals.empty(); }
+  // False also where the corners of a vertex differ; likewise of texture coordinates.
+  bool has_vertex_normals() const override { return !vertex_normals_.empty(); }
   bool has_vertex_colors() const override { return !mesh_.colors.empty(); }
-  // False also where the corners of a vertex differ.
   bool has_vertex_texcoords() const override { return !vertex_uvs_.empty(); }
 
   // The PLY writer looks for custom properties there.
@@ -92,25 +100,28 @@ class MeshExporter final : public OpenMesh::IO::BaseExporter {
   StatusInfo status(HalfedgeHandle) const override { return {}; }
 
  private:
-  void FindVertexUvs() {
-    if (mesh_.uvs.empty()) return;
-    std::vector<std::array<float, 2>> uvs(mesh_.positions.size());
+  // Fills `at_vertices` with the values of the vertices' corners; leaves it empty where those of a vertex differ.
+  template <class Value>
+  void AtVertices(const std::vector<Value>& values, const std::vector<Triangle>& corners,
+                  std::vector<Value>& at_vertices) const {
+    std::vector<Value> found(mesh_.positions.size());
     std::vector<bool> seen(mesh_.positions.size());
     for (std::size_t j = 0; j < mesh_.triangles.size(); ++j) {
       for (int k = 0; k < 3; ++k) {
         const std::uint32_t v = mesh_.triangles[j][k];
-        const auto& uv = mesh_.uvs[mesh_.uv_triangles[j][k]];
-        if (seen[v] && uvs[v] != uv) return;
+        const Value& value = values[corners[j][k]];
+        if (seen[v] && found[v] != value) return;
         seen[v] = true;
-        uvs[v] = uv;
+        found[v] = value;
       }
     }
-    vertex_uvs_ = std::move(uvs);
+    at_vertices = std::move(found);
   }
 
   const Mesh& mesh_;
   OpenMesh::BaseKernel kernel_;
   std::vector<std::array<float, 2>> vertex_uvs_;
+  std::vector<Vec3f> vertex_normals_;
 };
 
 }  // namespace sac

@@ -36,7 +36,7 @@ Positions ToInputOrder(const Positions& decoded, const VertexOrder& order) { ret
 Mesh ToInputOrder(const Mesh& decoded, const VertexOrder& order) {
   Mesh mesh = decoded;
   mesh.positions = Reorder(decoded.positions, order);
-  mesh.normals = Reorder(decoded.normals, order);
+  if (decoded.normal_triangles.empty()) mesh.normals = Reorder(decoded.normals, order);
   mesh.colors = Reorder(decoded.colors, order);
   for (Triangle& triangle : mesh.triangles) {
     for (std::uint32_t& vertex : triangle) vertex = order[vertex];

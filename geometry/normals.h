@@ -12,7 +12,7 @@ namespace sac {
 // The normal of a vertex without area around it is zero.
 std::vector<Vec3f> VertexNormals(const Positions& positions, const std::vector<Triangle>& triangles);
 
-// Computes the normals of one frame after another in memory that it keeps.
+// Computes the normals of one frame after another in memory that it keeps. Those of sac/frame_normals.h have creases.
 class NormalField {
  public:
   // The normals of `positions`, as VertexNormals() gives them, valid until the next call.

@@ -9,6 +9,7 @@
 
 #include "files/clip_input.h"
 #include "files/mesh_file.h"
+#include "tests/hard_cube.h"
 #include "tests/test_directory.h"
 
 namespace sac {
@@ -84,6 +85,73 @@ TEST_F(ClipOutputTest, SequenceIsNumberedByFrames) {
     EXPECT_EQ(mesh.triangles, mesh_.triangles);
   }
   EXPECT_EQ(directory_.FileCount(), 6U);
+}
+
+TEST_F(ClipOutputTest, NormalsAreThoseOfEachFrame) {
+  mesh_.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  mesh_.triangles = {{0, 1, 2}};
+  mesh_.uvs.clear();
+  mesh_.uv_triangles.clear();
+  mesh_.normals = {{0, 0, 1}, {0, 0, 1}, {0, 0, 1}};
+  const Positions turned = {{0, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+  for (const std::string extension : {"obj", "ply", "off"}) {
+    ASSERT_TRUE(ClipOutput::Open(directory_.Path("x_%d." + extension), mesh_, {}, output_).ok());
+    ASSERT_TRUE(output_->Write(0, mesh_.positions).ok());
+    ASSERT_TRUE(output_->Write(1, turned).ok());
+    ASSERT_TRUE(output_->Commit().ok());
+    Mesh mesh;
+    ASSERT_TRUE(ReadMesh(directory_.Path("x_0." + extension), mesh).ok());
+    EXPECT_EQ(mesh.normals, mesh_.normals);
+    ASSERT_TRUE(ReadMesh(directory_.Path("x_1." + extension), mesh).ok());
+    EXPECT_EQ(mesh.normals, (std::vector<Vec3f>(3, {1, 0, 0}))) << extension;
+  }
+  // Beside a cache stands the first frame written.
+  ASSERT_TRUE(ClipOutput::Open(directory_.Path("c.pc2"), mesh_, {}, output_).ok());
+  ASSERT_TRUE(output_->Write(1, turned).ok());
+  ASSERT_TRUE(output_->Write(2, mesh_.positions).ok());
+  ASSERT_TRUE(output_->Commit().ok());
+  Mesh mesh;
+  ASSERT_TRUE(ReadMesh(directory_.Path("c.obj"), mesh).ok());
+  EXPECT_EQ(mesh.normals, (std::vector<Vec3f>(3, {1, 0, 0})));
+}
+
+TEST_F(ClipOutputTest, WarnsOnceOfNormalsThatFilesCannotHold) {
+  const Mesh cube = HardCubeMesh();
+  ASSERT_TRUE(ClipOutput::Open(directory_.Path("x_%d.ply"), cube, {}, output_).ok());
+  for (int t = 0; t < 3; ++t) ASSERT_TRUE(output_->Write(static_cast<std::uint64_t>(t), cube.positions).ok());
+  ASSERT_EQ(output_->warnings().size(), 1U);
+  EXPECT_EQ(output_->warnings()[0].rfind(directory_.Path("x_0.ply") + ": ", 0), 0U);
+  ASSERT_TRUE(ClipOutput::Open(directory_.Path("x_%d.obj"), cube, {}, output_).ok());
+  ASSERT_TRUE(output_->Write(0, cube.positions).ok());
+  EXPECT_TRUE(output_->warnings().empty());
+}
+
+TEST_F(ClipOutputTest, CachesRoundTheSumWithAnOffset) {
+  ClipOutput::Settings settings;
+  settings.offset = {5600000, 0, 0};
+  for (const double precision : {0.01, 1.0}) {
+    settings.precision = precision;
+    ASSERT_TRUE(ClipOutput::Open(directory_.Path("a.pc2"), mesh_, settings, output_).ok());
+    ASSERT_TRUE(output_->Write(0, Frame(0.2F)).ok());
+    ASSERT_TRUE(output_->Commit().ok());
+    std::unique_ptr<CacheReader> reader;
+    Positions positions;
+    ASSERT_TRUE(CacheReader::Open(directory_.Path("a.pc2"), reader).ok());
+    ASSERT_TRUE(reader->Read(0, positions).ok());
+    EXPECT_EQ(positions, (Positions{{5600000, 0, 0}, {5600000, 0.2F, 0}, {5600000, 0, 5}}));
+    EXPECT_EQ(output_->warnings(),
+              precision == 1.0 ? Warnings{}
+                               : Warnings{directory_.Path("a.pc2") +
+                                          ": the format's 32-bit floats round the coordinates by up to 0.2; meshes "
+                                          "(.obj, .ply, .off) hold them exactly"});
+    EXPECT_NE(directory_.Read("a.obj").find("v 5600000.200000003 0 0 "), std::string::npos);
+  }
+  settings.offset = {0, 1e39, 0};
+  ASSERT_TRUE(ClipOutput::Open(directory_.Path("a.mdd"), mesh_, settings, output_).ok());
+  EXPECT_EQ(output_->Write(3, Frame(1)).message(),
+            directory_.Path("a.mdd") +
+                ": frame 3: vertex 0 is beyond the range of the format's 32-bit floats; meshes "
+                "(.obj) hold it");
 }
 
 TEST_F(ClipOutputTest, NothingStaysWithoutCommit) {
