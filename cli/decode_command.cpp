@@ -83,18 +83,22 @@ class Decoding {
   VertexOrder order_;  // empty: as decoded
   std::unique_ptr<ClipOutput> output_;
   std::uint32_t written_ = 0;  // the frame after the last one written
+  Positions first_;            // of frame 0, which the normals belong to
   Positions last_;             // with skip_damage
 };
 
 // Needs the decoded mesh.
 Status Decoding::OpenOutput(const Decoder& decoder) {
-  const Mesh& mesh = *decoder.mesh();
+  Mesh mesh = *decoder.mesh();
+  if (!first_.empty()) mesh.positions = first_;
   order_ = decoder.order();
   if (!options_.order_map.empty()) {
     SAC_RETURN_IF_ERROR(ReadOrderMap(options_.order_map, mesh.positions.size(), order_));
   }
   ClipOutput::Settings settings;
   settings.fps = decoder.info()->frame_rate_numerator == 0 ? kFpsOfUnknown : decoder.info()->frames_per_second();
+  settings.offset = decoder.info()->offset;
+  settings.precision = decoder.info()->position_step;
   // A pipe cannot be told the number at the end. Elsewhere it is not promised before the stream has shown as many.
   if (std::error_code error; options_.frames.end && std::filesystem::is_fifo(options_.output, error)) {
     settings.frame_count = *options_.frames.end - options_.frames.begin;
@@ -136,6 +140,7 @@ Status Decoding::Run() {
     if (end) break;
     count = frame.index + 1;
     progress.FramesDone(count);
+    if (frame.index == 0) first_ = frame.positions;
     if (frame.index < range.begin) continue;
     if (!output_) SAC_RETURN_IF_ERROR(OpenOutput(frames.decoder()));
     SAC_RETURN_IF_ERROR(FillUpTo(std::min(frame.index, range.end.value_or(frame.index)), frame.positions));
@@ -157,7 +162,9 @@ Status Decoding::Run() {
                                    std::to_string(output_ ? *range.end - 1 : range.begin) + ", the last one is " +
                                    std::to_string(count - 1));
   }
-  return output_->Commit();
+  SAC_RETURN_IF_ERROR(output_->Commit());
+  for (const std::string& warning : output_->warnings()) std::fprintf(stderr, "sac: warning: %s\n", warning.c_str());
+  return Status::Ok();
 }
 
 }  // namespace

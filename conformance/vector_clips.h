@@ -19,6 +19,10 @@ Clip Wave(const Mesh& mesh, std::uint32_t frames);
 // and a duplicate triangle, one turned around; with all attributes and a seam of texture coordinates.
 Mesh OddMesh();
 
+// The same with normals of corners, in all that 5.3 says of them: smooth and hard vertices, normals that are equal once
+// quantized, hard ones at a weld and at loose triangles.
+Mesh OddHardMesh();
+
 // More neighbours, and more triangles at an edge, than the code of positions looks at (spec.md 5.5): double cones
 // around 31, 32 and 33 vertices, joined to each other, a book of 25 pages, and triangles at random.
 Mesh CrowdedMesh();
