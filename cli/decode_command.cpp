@@ -16,6 +16,7 @@
 #include "cli/number_option.h"
 #include "cli/progress.h"
 #include "cli/warning_report.h"
+#include "files/axes.h"
 #include "files/clip_output.h"
 #include "files/overwriting.h"
 #include "files/stream_input.h"
@@ -35,6 +36,7 @@ struct DecodeOptions {
   std::string input, output, order_map;
   WantedFrames frames;
   std::uint32_t first_number = 0;  // of the first frame, in the names of a sequence
+  AxisConversion axes;
   bool skip_damage = false, force = false, strict = false;
 };
 
@@ -87,12 +89,14 @@ class Decoding {
   VertexOrder order_;  // empty: as decoded
   std::unique_ptr<ClipOutput> output_;
   std::uint32_t written_ = 0;  // the frame after the last one written
+  Positions first_;            // of frame 0, which the normals belong to
   Positions last_;             // with skip_damage
 };
 
 // Needs the decoded mesh.
 Status Decoding::OpenOutput(const Decoder& decoder) {
-  const Mesh& mesh = *decoder.mesh();
+  Mesh mesh = *decoder.mesh();
+  if (!first_.empty()) mesh.positions = first_;
   order_ = decoder.order();
   if (!options_.order_map.empty()) {
     SAC_RETURN_IF_ERROR(ReadOrderMap(options_.order_map, mesh.positions.size(), order_));
@@ -100,17 +104,20 @@ Status Decoding::OpenOutput(const Decoder& decoder) {
   ClipOutput::Settings settings;
   settings.force = options_.force;
   settings.fps = decoder.info()->frame_rate_numerator == 0 ? kFpsOfUnknown : decoder.info()->frames_per_second();
+  settings.offset = options_.axes.Point(decoder.info()->offset);
+  settings.precision = options_.axes.scale() * decoder.info()->position_step;
   // A pipe cannot be told the number at the end. Elsewhere it is not promised before the stream has shown as many.
   if (std::error_code error; options_.frames.end && std::filesystem::is_fifo(options_.output, error)) {
     settings.frame_count = *options_.frames.end - options_.frames.begin;
   }
-  return ClipOutput::Open(options_.output, order_.empty() ? mesh : ToInputOrder(mesh, order_), settings, output_);
+  mesh = options_.axes.Convert(order_.empty() ? std::move(mesh) : ToInputOrder(mesh, order_));
+  return ClipOutput::Open(options_.output, mesh, settings, output_);
 }
 
 Status Decoding::Write(std::uint32_t index, const Positions& positions) {
   written_ = index + 1;
   return output_->Write(std::uint64_t{index} + options_.first_number,
-                        order_.empty() ? positions : ToInputOrder(positions, order_));
+                        options_.axes.Points(order_.empty() ? positions : ToInputOrder(positions, order_)));
 }
 
 Status Decoding::FillUpTo(std::uint32_t index, const Positions& next) {
@@ -142,6 +149,7 @@ Status Decoding::Run() {
     if (end) break;
     count = frame.index + 1;
     progress.FramesDone(count);
+    if (frame.index == 0) first_ = frame.positions;
     if (frame.index < range.begin) continue;
     if (!output_) SAC_RETURN_IF_ERROR(OpenOutput(frames.decoder()));
     SAC_RETURN_IF_ERROR(FillUpTo(std::min(frame.index, range.end.value_or(frame.index)), frame.positions));
@@ -167,7 +175,7 @@ Status Decoding::Run() {
 }
 
 Status Decoding::Commit() {
-  Warnings warnings;
+  Warnings warnings = output_->warnings();
   // Who asks for some of the frames may have others there on purpose.
   const bool whole = options_.frames.begin == 0 && !options_.frames.end;
   if (const std::string stale = whole ? output_->StaleFrames() : std::string(); !stale.empty()) {
@@ -208,6 +216,25 @@ Command AddDecodeCommand(CLI::App& app) {
                     "go on after damage with the next group that is sound, and tell which frames are lost");
   AddNumber(*command, "--first-number", options->first_number, 0u, 0xffffffffu,
             "the number of frame 0 in the names of a sequence [0]");
+  command
+      ->add_option(
+          "--up",
+          [options](const CLI::results_t& words) {
+            if (options->axes.ParseUp(words.front())) return true;
+            throw CLI::ValidationError("--up", "'" + words.front() + "' is neither y:z nor z:y");
+          },
+          "turn what has y up so that z is up, y:z, or the other way round, z:y")
+      ->option_text("FROM:TO");
+  command
+      ->add_option(
+          "--units",
+          [options](const CLI::results_t& words) {
+            if (options->axes.ParseUnits(words.front())) return true;
+            throw CLI::ValidationError(
+                "--units", "'" + words.front() + "' is no pair of mm, cm, m, km, in, ft and yd such as cm:m");
+          },
+          "scale from one unit of length to another: mm, cm, m, km, in, ft, yd")
+      ->option_text("FROM:TO");
   command->add_flag("--force", options->force, "replace a mesh that is there beside the cache to write");
   AddStrict(*command, options->strict);
   command->footer(

@@ -42,7 +42,7 @@ struct EncodeOptions {
   std::optional<double> quality;
   std::string reference = "key";
   std::string gaps = "error";
-  bool json = false, strict = false;
+  bool json = false, strict = false, skip_damage = false;
 };
 
 Status CheckOptions(EncodeOptions& options) {
@@ -99,9 +99,11 @@ Status EncodeFiles(const EncodeOptions& options, EncodedClip& encoded, Warnings&
   std::unique_ptr<ClipInput> input;
   ClipInputSettings reading;
   reading.gaps = options.gaps == "hold" ? Gaps::kHold : options.gaps == "skip" ? Gaps::kSkip : Gaps::kError;
+  reading.skip_damage = options.skip_damage;
   SAC_RETURN_IF_ERROR(ClipInput::Open(options.inputs, input, reading));
   if (options.strict) SAC_RETURN_IF_ERROR(TellWarnings(input->warnings(), true));  // better now than after the encoding
   ClipEncoding encoding = options.encoding;
+  encoding.encoder.offset = input->offset();
   SAC_RETURN_IF_ERROR(TakeMaxError(options, input->mesh(), encoding.encoder));
   // The outputs before the harmonics, which take long.
   OutputFile stream, order_map;
@@ -224,6 +226,7 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
          "for them) or skip [error]")
       ->check(CLI::IsMember(std::vector<std::string>{"error", "hold", "skip"}))
       ->option_text("WHAT");
+  app.add_flag("--skip-damage", o.skip_damage, "read the whole frames of a cache that is cut short");
   AddStrict(app, o.strict);
   app.add_flag("--json", o.json, "report sizes in bytes, distortion and settings as one JSON object");
 }

@@ -20,7 +20,8 @@ struct InfoOptions {
   bool json = false;
 };
 
-std::string ShortestText(float value) {
+template <class Float>
+std::string ShortestText(Float value) {
   char text[32];
   return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
@@ -45,8 +46,15 @@ std::vector<std::string> Attributes(const IFrameSummary& i_frame) {
   return names;
 }
 
+// Calls visit(name, value) for each field, the offset's too where there is one.
+template <class Visitor>
+void VisitAll(const SequenceHeader& header, Visitor&& visit) {
+  VisitFields(header, visit);
+  if (header.has_offset()) VisitOffset(header, visit);
+}
+
 void PrintHeader(const SequenceHeader& header) {
-  VisitFields(header, [](const char* name, const auto& value) {
+  VisitAll(header, [](const char* name, const auto& value) {
     if constexpr (std::is_floating_point_v<std::decay_t<decltype(value)>>) {
       std::printf("%-24s %s\n", name, ShortestText(value).c_str());
     } else {
@@ -85,7 +93,7 @@ Json ToJson(const StreamSummary& summary, const Status& status) {
   if (!status.ok()) json["error"] = status.message();
   if (summary.header) {
     // A float through its shortest text, so that 0.1f is 0.1.
-    VisitFields(*summary.header, [&json](const char* name, const auto& value) {
+    VisitAll(*summary.header, [&json](const char* name, const auto& value) {
       if constexpr (std::is_floating_point_v<std::decay_t<decltype(value)>>) {
         json["header"][name] = Json::parse(ShortestText(value));
       } else {

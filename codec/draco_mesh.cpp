@@ -67,6 +67,13 @@ Status Extract(const draco::Mesh& in, bool with_ids, DracoMesh& out) {
     out.uvs = Values<std::array<float, 2>>(*uv, uv->size());
     if (!corners(*uv, out.uv_triangles)) return Status::Corrupt("I-frame: a corner without a texture coordinate");
   }
+  if (const auto* normal = in.GetNamedAttribute(draco::GeometryAttribute::NORMAL)) {
+    if (normal->data_type() != draco::DT_FLOAT32 || normal->num_components() != 3) {
+      return Status::Corrupt("I-frame: normals of an unknown type");
+    }
+    out.normals = Values<Vec3f>(*normal, normal->size());
+    if (!corners(*normal, out.normal_triangles)) return Status::Corrupt("I-frame: a corner without a normal");
+  }
   // Attributes of vertices: whichever corner comes last decides; an encoder gives all the same.
   const auto per_entry = [&]<class Value>(const draco::PointAttribute& attribute, std::vector<Value>& values) {
     values.resize(out.entries);
@@ -79,11 +86,6 @@ Status Extract(const draco::Mesh& in, bool with_ids, DracoMesh& out) {
     }
     return true;
   };
-  if (const auto* normal = in.GetNamedAttribute(draco::GeometryAttribute::NORMAL)) {
-    if (normal->data_type() != draco::DT_FLOAT32 || normal->num_components() != 3 || !per_entry(*normal, out.normals)) {
-      return Status::Corrupt("I-frame: malformed normals");
-    }
-  }
   if (const auto* color = in.GetNamedAttribute(draco::GeometryAttribute::COLOR)) {
     if (color->data_type() != draco::DT_UINT8 || color->num_components() != 4 || !per_entry(*color, out.colors)) {
       return Status::Corrupt("I-frame: malformed colours");

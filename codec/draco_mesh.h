@@ -19,8 +19,9 @@ struct DracoMesh {
   std::uint32_t entries = 0;
   std::vector<Triangle> triangles;  // of entries
   std::vector<std::array<float, 2>> uvs;
-  std::vector<Triangle> uv_triangles;               // of uvs; empty without texture coordinates
-  std::vector<Vec3f> normals;                       // per entry; empty without
+  std::vector<Triangle> uv_triangles;  // of uvs; empty without texture coordinates
+  std::vector<Vec3f> normals;
+  std::vector<Triangle> normal_triangles;           // of normals; empty without
   std::vector<std::array<std::uint8_t, 4>> colors;  // per entry; empty without
   std::vector<std::uint32_t> ids;                   // per entry, of an encoder's own numbering; empty without
 };

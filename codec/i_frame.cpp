@@ -2,10 +2,15 @@
 #include "codec/i_frame.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
+#include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "codec/patches.h"
 #include "codec/position_coder.h"
+#include "geometry/corner_groups.h"
 
 namespace sac {
 namespace {
@@ -30,7 +35,7 @@ struct Assembly {
 
 Status CheckAttributes(const IFrameSyntax& syntax, const DracoMesh& draco) {
   if (syntax.loose_vertices.empty()) return Status::Ok();
-  if (!draco.normals.empty() && !syntax.has_normals) {
+  if (!draco.normal_triangles.empty() && !syntax.has_normals) {
     return Status::Corrupt("I-frame: loose vertices without normals");
   }
   if (!draco.colors.empty() && !syntax.has_colors) return Status::Corrupt("I-frame: loose vertices without colours");
@@ -69,17 +74,48 @@ Status ReadPositions(const IFrameSyntax& syntax, const SequenceHeader& header, A
                          {syntax.position_step, syntax.position_slope}, header.position_bits, out.grid);
 }
 
-// A corner of a loose triangle takes the texture coordinate of the first corner that its vertex has in Draco's mesh.
-void AddLooseTextureTriangles(const IFrameSyntax& syntax, Assembly& out) {
-  std::vector<Triangle>& uv_triangles = out.draco.uv_triangles;
-  if (uv_triangles.empty() || syntax.loose_triangles.empty()) return;
-  std::vector<std::uint32_t> uv_of_vertex(out.vertices, 0);
-  for (std::size_t j = uv_triangles.size(); j-- > 0;) {
-    for (std::size_t k = 3; k-- > 0;) uv_of_vertex[out.triangles[j][k]] = uv_triangles[j][k];
+// Adds to `corners` those of the loose triangles: each takes the value of the first corner that its vertex has in
+// Draco's mesh, or its vertex's own of `of_vertex`. `triangles` are Draco's, of vertices.
+void AddLooseCorners(const std::vector<Triangle>& triangles, const std::vector<Triangle>& loose_triangles,
+                     std::vector<std::uint32_t> of_vertex, std::vector<Triangle>& corners) {
+  for (std::size_t j = corners.size(); j-- > 0;) {
+    for (std::size_t k = 3; k-- > 0;) of_vertex[triangles[j][k]] = corners[j][k];
   }
-  for (const Triangle& t : syntax.loose_triangles) {
-    uv_triangles.push_back({uv_of_vertex[t[0]], uv_of_vertex[t[1]], uv_of_vertex[t[2]]});
+  for (const Triangle& t : loose_triangles) corners.push_back({of_vertex[t[0]], of_vertex[t[1]], of_vertex[t[2]]});
+}
+
+// Of normals with the same bits one number, for each normal.
+std::vector<std::uint32_t> ClassesByBits(const std::vector<Vec3f>& normals) {
+  using Bits = std::array<std::uint32_t, 3>;
+  const auto bits = [&](std::uint32_t i) { return std::bit_cast<Bits>(normals[i]); };
+  std::vector<std::uint32_t> order(normals.size()), classes(normals.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return bits(a) < bits(b); });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    classes[order[i]] = classes[order[i - 1]] + (bits(order[i]) == bits(order[i - 1]) ? 0 : 1);
   }
+  return classes;
+}
+
+// Brings the normals of Draco's corners, of loose triangles and of loose vertices together (spec.md 5.3). The triangles
+// are all there already.
+void JoinNormals(const IFrameSyntax& syntax, Assembly& out) {
+  DracoMesh& draco = out.draco;
+  const bool has_loose = syntax.has_normals && !syntax.loose_vertices.empty();
+  if (draco.normal_triangles.empty() && !has_loose) return;
+  const auto none = static_cast<std::uint32_t>(draco.normals.size());
+  draco.normals.push_back({});  // where there is no normal
+  std::vector<std::uint32_t> of_vertex(out.vertices, none);
+  std::vector<Vec3f> loose(out.vertices);
+  for (std::size_t i = 0; has_loose && i < syntax.loose_vertices.size(); ++i) {
+    const std::uint32_t v = out.vertex[draco.entries + i];
+    of_vertex[v] = static_cast<std::uint32_t>(draco.normals.size());
+    loose[v] = syntax.loose_vertices[i].normal;
+    draco.normals.push_back(loose[v]);
+  }
+  draco.normal_triangles.resize(out.triangles.size() - syntax.loose_triangles.size(), {none, none, none});
+  AddLooseCorners(out.triangles, syntax.loose_triangles, std::move(of_vertex), draco.normal_triangles);
+  MergeNormals(out.triangles, out.vertices, ClassesByBits(draco.normals), loose, draco.normals, draco.normal_triangles);
 }
 
 // Adds loose vertices and triangles after Draco's (spec.md 5.3, step 1).
@@ -88,22 +124,25 @@ Status AddLooseParts(const IFrameSyntax& syntax, const SequenceHeader& header, A
   if (out.triangles.size() + syntax.loose_triangles.size() != header.triangles) {
     return Status::Corrupt("I-frame: the number of triangles is not the header's");
   }
-  if (syntax.has_normals && !syntax.loose_vertices.empty()) draco.normals.resize(draco.entries);
   if (syntax.has_colors && !syntax.loose_vertices.empty()) draco.colors.resize(draco.entries);
   for (std::size_t i = 0; i < syntax.loose_vertices.size(); ++i) {
     const LooseVertex& v = syntax.loose_vertices[i];
     out.vertex[draco.entries + i] = out.vertices++;
     out.grid.push_back(v.position);
-    if (syntax.has_normals) draco.normals.push_back(v.normal);
     if (syntax.has_colors) draco.colors.push_back(v.color);
   }
-  AddLooseTextureTriangles(syntax, out);
+  if (!draco.uv_triangles.empty()) {
+    AddLooseCorners(out.triangles, syntax.loose_triangles, std::vector<std::uint32_t>(out.vertices),
+                    draco.uv_triangles);
+  }
   out.triangles.insert(out.triangles.end(), syntax.loose_triangles.begin(), syntax.loose_triangles.end());
+  JoinNormals(syntax, out);
   return Status::Ok();
 }
 
 // Renumbers the vertices by component and, within it, by patch, so that each of these is a run (spec.md 5.3, step 2).
-void Renumber(std::uint32_t patch_size, Assembly& parts, DecodedMesh& mesh) {
+// Returns the new number of each vertex.
+std::vector<std::uint32_t> Renumber(std::uint32_t patch_size, Assembly& parts, DecodedMesh& mesh) {
   std::uint32_t components = 0;
   const std::vector<std::uint32_t> label = LabelComponents(parts.vertices, parts.triangles, components);
   std::vector<std::vector<std::uint32_t>> members(components);
@@ -126,6 +165,7 @@ void Renumber(std::uint32_t patch_size, Assembly& parts, DecodedMesh& mesh) {
   for (std::uint32_t& v : parts.vertex) v = renumbered[v];
   mesh.grid = Scatter(parts.grid, renumbered, parts.vertices);
   mesh.triangles = std::move(parts.triangles);
+  return renumbered;
 }
 
 }  // namespace
@@ -137,8 +177,10 @@ Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, 
   SAC_RETURN_IF_ERROR(JoinEntries(syntax, header, parts));
   SAC_RETURN_IF_ERROR(ReadPositions(syntax, header, parts));
   SAC_RETURN_IF_ERROR(AddLooseParts(syntax, header, parts));
-  Renumber(header.patch_size, parts, out.mesh);
-  out.normals = Scatter(parts.draco.normals, parts.vertex, parts.vertices);
+  std::vector<std::uint32_t> renumbered = Renumber(header.patch_size, parts, out.mesh);
+  out.normals = std::move(parts.draco.normals);
+  out.normal_triangles = std::move(parts.draco.normal_triangles);
+  if (out.normal_triangles.empty()) out.normals = Scatter(out.normals, renumbered, parts.vertices);
   out.colors = Scatter(parts.draco.colors, parts.vertex, parts.vertices);
   out.uvs = std::move(parts.draco.uvs);
   out.uv_triangles = std::move(parts.draco.uv_triangles);

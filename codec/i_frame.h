@@ -21,6 +21,7 @@ struct DecodedIFrame {
   std::vector<std::array<float, 2>> uvs;
   std::vector<Triangle> uv_triangles;
   std::vector<Vec3f> normals;
+  std::vector<Triangle> normal_triangles;  // empty when the normals are those of vertices
   std::vector<std::array<std::uint8_t, 4>> colors;
   std::vector<std::uint32_t> vertex_of_entry;  // Draco's entries, then the loose vertices
 };

@@ -86,6 +86,10 @@ TEST(Conformance, ValidStreamsDecode) {
     EXPECT_EQ(TuplesCrc32(mesh.triangles), vector.at("triangles_crc32"));
     EXPECT_EQ(mesh.uvs.size(), vector.value("uvs", 0u));
     EXPECT_EQ(mesh.normals.size(), vector.value("normals", 0u));
+    EXPECT_EQ(mesh.normal_triangles.empty() ? "" : TuplesCrc32(mesh.normal_triangles),
+              vector.value("normal_triangles_crc32", ""));
+    const std::array<double, 3> none = {};
+    EXPECT_EQ(d.decoder.info()->offset, vector.value("offset", none));
     EXPECT_EQ(mesh.uvs.empty() ? "" : TuplesCrc32(mesh.uv_triangles), vector.value("uv_triangles_crc32", ""));
     EXPECT_EQ(mesh.colors.empty() ? "" : TuplesCrc32(mesh.colors), vector.value("colors_crc32", ""));
     std::vector<std::array<std::uint32_t, 1>> order;

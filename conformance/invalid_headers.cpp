@@ -136,6 +136,10 @@ void AddHeader(Collection& c) {
   header("R61", "many", [](SequenceHeader& h) { h.patch_size = 1025; });
   header("R62", "detail", [](SequenceHeader& h) { h.detail_step = -1; });
   header("R62", "correction", [](SequenceHeader& h) { h.correction_step = kNan; });
+  header("R68", "nan", [](SequenceHeader& h) { h.offset_y = std::numeric_limits<double>::quiet_NaN(); });
+  header("R68", "infinity", [](SequenceHeader& h) { h.offset_x = -std::numeric_limits<double>::infinity(); });
+  c.ChangePackets("R68", "zero", [](auto& packets) { packets[0].second.insert(packets[0].second.end(), 24, 0); });
+  c.ChangePackets("R12", "offset", [](auto& packets) { packets[0].second.insert(packets[0].second.end(), 16, 1); });
   header(
       "R22", "vertices", [](SequenceHeader& h) { h.vertices = 4'000'001; }, "limit");
   header(

@@ -2,6 +2,7 @@
 // make_vectors DIRECTORY writes all conformance vectors and their manifest into DIRECTORY, and the examples of appendix
 // A into spec.md in the directory above. See README.md.
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
@@ -67,11 +68,13 @@ std::optional<Json> Describe(const ValidVector& vector) {
                {"triangles", mesh.triangles.size()},
                {"triangles_crc32", TuplesCrc32(mesh.triangles)},
                {"coefficients_crc32", Hex(crc)}};
+  if (const auto& offset = decoder.info()->offset; offset != std::array<double, 3>{}) json["offset"] = offset;
   if (!mesh.uvs.empty()) {
     json["uvs"] = mesh.uvs.size();
     json["uv_triangles_crc32"] = TuplesCrc32(mesh.uv_triangles);
   }
   if (!mesh.normals.empty()) json["normals"] = mesh.normals.size();
+  if (!mesh.normal_triangles.empty()) json["normal_triangles_crc32"] = TuplesCrc32(mesh.normal_triangles);
   if (!mesh.colors.empty()) json["colors_crc32"] = TuplesCrc32(mesh.colors);
   if (!decoder.order().empty()) {
     std::vector<std::array<std::uint32_t, 1>> order;

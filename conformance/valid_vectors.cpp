@@ -6,6 +6,7 @@
 
 #include "conformance/vector_clips.h"
 #include "format/stream_index.h"
+#include "tests/hard_cube.h"
 
 namespace sac {
 namespace {
@@ -235,6 +236,11 @@ void AddStructures(std::vector<ValidVector>& vectors) {
   Add(vectors, "components", "many components, colours, kept order", Synth(SynthKind::kParts, 200, 20), kept);
   Add(vectors, "seam", "texture coordinates with a seam, kept order", Synth(SynthKind::kVase, 200, 10), kept);
   Add(vectors, "odd", "welds, loose vertices and triangles, all attributes, kept order", Wave(OddMesh(), 12), kept, 60);
+  EncoderSettings moved = kept;
+  moved.offset = {500000.1, -5600000, 301};
+  Add(vectors, "hard_edges", "normals of corners, an offset", Wave(HardCubeMesh(), 6), moved, 60);
+  Add(vectors, "odd_hard", "normals of corners with welds, loose vertices and loose triangles, a seam",
+      Wave(OddHardMesh(), 4), kept, 60);
   Add(vectors, "crowded", "vertices of more than 32 edges, edges of many triangles", Wave(CrowdedMesh(), 3),
       Harmonics(24), 60);
   Add(vectors, "stand_still", "frames that repeat, within a group and across groups", StandStill(), pyramids);

@@ -50,6 +50,20 @@ Mesh OddMesh() {
   return mesh;
 }
 
+Mesh OddHardMesh() {
+  Mesh mesh = OddMesh();
+  mesh.normals = {{0, 0, 1}, {0.6f, 0, 0.8f}, {0, 1, 0}, {0, -0.6f, 0.8f}, {0, 0, 1}, {1e-6f, 0, 1}};
+  for (std::size_t j = 0; j < mesh.triangles.size(); ++j) {
+    Triangle& corners = mesh.normal_triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh.triangles[j][k];
+      const auto by_triangle = static_cast<std::uint32_t>(j % 4);
+      corners[k] = v % 3 == 0 ? by_triangle : v % 3 == 1 ? 1 : static_cast<std::uint32_t>(4 + j % 2);
+    }
+  }
+  return mesh;
+}
+
 Mesh CrowdedMesh() {
   Mesh mesh;
   std::mt19937 random(2);

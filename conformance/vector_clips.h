@@ -20,6 +20,10 @@ Clip Wave(const Mesh& mesh, std::uint32_t frames);
 // a seam of texture coordinates.
 Mesh OddMesh();
 
+// The same with normals of corners, in all that 5.3 says of them: smooth and hard vertices, normals that are equal once
+// quantized, hard ones at a weld and at loose triangles.
+Mesh OddHardMesh();
+
 // A mesh with more neighbours of a vertex, and more triangles at an edge, than the prediction of positions uses
 // (spec.md 5.5): double cones around 31, 32 and 33 vertices, joined to each other, 25 triangles at one edge, and random
 // triangles.

@@ -21,6 +21,11 @@ class ByteWriter {
     for (int i = 0; i < 4; ++i) U8(static_cast<std::uint8_t>(v >> (8 * i)));
   }
   void F32(float v) { U32(std::bit_cast<std::uint32_t>(v)); }
+  void F64(double v) {
+    const auto bits = std::bit_cast<std::uint64_t>(v);
+    U32(static_cast<std::uint32_t>(bits));
+    U32(static_cast<std::uint32_t>(bits >> 32));
+  }
   void Varint(std::uint32_t v) {
     for (; v >= 0x80; v >>= 7) U8(static_cast<std::uint8_t>(v | 0x80));
     U8(static_cast<std::uint8_t>(v));
@@ -53,6 +58,10 @@ class ByteReader {
     return v;
   }
   float F32() { return std::bit_cast<float>(U32()); }
+  double F64() {
+    const std::uint64_t low = U32(), high = U32();
+    return std::bit_cast<double>(low | high << 32);
+  }
   std::uint32_t Varint() {
     std::uint64_t v = 0;
     for (int shift = 0; shift < 35; shift += 7) {

@@ -14,6 +14,7 @@ struct FieldWriter {
   void operator()(const char*, const std::uint8_t& v) { out.U8(v); }
   void operator()(const char*, const std::uint32_t& v) { out.Varint(v); }
   void operator()(const char*, const float& v) { out.F32(v); }
+  void operator()(const char*, const double& v) { out.F64(v); }
 };
 
 struct FieldReader {
@@ -21,6 +22,7 @@ struct FieldReader {
   void operator()(const char*, std::uint8_t& v) { v = in.U8(); }
   void operator()(const char*, std::uint32_t& v) { v = in.Varint(); }
   void operator()(const char*, float& v) { v = in.F32(); }
+  void operator()(const char*, double& v) { v = in.F64(); }
 };
 
 Status Exceeds(const char* what, std::uint64_t value, std::uint64_t limit) {
@@ -32,6 +34,7 @@ Status Exceeds(const char* what, std::uint64_t value, std::uint64_t limit) {
 std::vector<std::uint8_t> WriteSequenceHeader(const SequenceHeader& header) {
   FieldWriter writer;
   VisitFields(header, writer);
+  if (header.has_offset()) VisitOffset(header, writer);
   return std::move(writer.out.bytes());
 }
 
@@ -44,6 +47,8 @@ Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& 
   }
   FieldReader reader{ByteReader(payload)};
   VisitFields(header, reader);
+  const bool has_offset = reader.in.remaining() > 0;
+  if (has_offset) VisitOffset(header, reader);
   if (!reader.in.ok() || reader.in.remaining() != 0) return Status::Corrupt("sequence header: wrong length");
   if (header.reference_shape > 1) return Status::Corrupt("sequence header: unknown reference shape");
   if (header.position_bits < 1 || header.position_bits > 24) return Status::Corrupt("sequence header: position bits");
@@ -63,6 +68,10 @@ Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& 
   for (const float v : {header.detail_step, header.correction_step}) {
     if (!std::isfinite(v) || v < 0) return Status::Corrupt("sequence header: a step is negative");
   }
+  for (const double v : {header.offset_x, header.offset_y, header.offset_z}) {
+    if (!std::isfinite(v)) return Status::Corrupt("sequence header: the offset is not finite");
+  }
+  if (has_offset && !header.has_offset()) return Status::Corrupt("sequence header: an offset of zero");
   if (header.vertices > limits.vertices) return Exceeds("vertices", header.vertices, limits.vertices);
   if (header.triangles > limits.expert.triangles)
     return Exceeds("triangles", header.triangles, limits.expert.triangles);
@@ -85,6 +94,7 @@ StreamInfo InfoOf(const SequenceHeader& header) {
   info.displacement_step = static_cast<double>(header.displacement_step);
   info.detail_step = static_cast<double>(header.detail_step);
   info.correction_step = static_cast<double>(header.correction_step);
+  info.offset = {header.offset_x, header.offset_y, header.offset_z};
   return info;
 }
 

@@ -39,7 +39,12 @@ struct SequenceHeader {
   float correction_step = 0;    // model units; 0: no correction plane
   float rotation_step = 0;      // of the rigid motion, radians
   float translation_step = 0;   // of the rigid motion, model units
+  // Where the origin of the positions is in the author's coordinates, model units; only in the bytes if it is not zero.
+  double offset_x = 0;
+  double offset_y = 0;
+  double offset_z = 0;
 
+  bool has_offset() const { return offset_x != 0 || offset_y != 0 || offset_z != 0; }
   bool references_previous() const { return reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious); }
   double frames_per_second() const {
     return static_cast<double>(frame_rate_numerator) / static_cast<double>(frame_rate_denominator);
@@ -73,7 +78,16 @@ void VisitFields(Header& h, Visitor&& visit) {
   visit("translation_step", h.translation_step);
 }
 
-// Returns the payload of a header packet: u8 fields as one byte, u32 fields as varints, floats as four bytes.
+// The same for the fields that follow these where there is an offset.
+template <class Header, class Visitor>
+void VisitOffset(Header& h, Visitor&& visit) {
+  visit("offset_x", h.offset_x);
+  visit("offset_y", h.offset_y);
+  visit("offset_z", h.offset_z);
+}
+
+// Returns the payload of a header packet: u8 fields as one byte, u32 fields as varints, floats as four bytes,
+// doubles as eight.
 std::vector<std::uint8_t> WriteSequenceHeader(const SequenceHeader& header);
 
 // Parses and checks every field. Returns kUnsupported for another version, kCorrupt when a rule of spec.md 4 is broken,

@@ -54,6 +54,7 @@ Status Measurement::Finish(EncodedClip& result) {
   if (!expected_.empty()) return Status::Corrupt("a frame is missing");
   result.distortion = meter_.Result();
   result.lost_texture_coordinates = decoder_.mesh()->uv_triangles.empty();
+  result.lost_normals = decoder_.mesh()->normals.empty();
   return Status::Ok();
 }
 
@@ -102,6 +103,7 @@ Status EncodeAndMeasure(ClipReader& clip, const EncoderSettings& settings, bool 
   SAC_RETURN_IF_ERROR(take());
   if (measure) SAC_RETURN_IF_ERROR(Named(name, Named("decoding what was encoded", measurement.Finish(result))));
   result.lost_texture_coordinates = result.lost_texture_coordinates && !clip.mesh().uv_triangles.empty();
+  result.lost_normals = result.lost_normals && !clip.mesh().normals.empty();
   result.settings = settings;
   result.info = encoder->info();
   result.parts = encoder->stream_bytes();

@@ -196,9 +196,32 @@ sac_status sac_decoder_mesh(sac_decoder* decoder, sac_mesh* mesh) {
     mesh->triangle_vertices = Flat<std::uint32_t>(m.triangles);
     mesh->uv_values = Flat<float>(m.uvs);
     mesh->triangle_uvs = Flat<std::uint32_t>(m.uv_triangles);
-    mesh->normals = Flat<float>(m.normals);
+    mesh->normals = m.normal_triangles.empty() ? Flat<float>(m.normals) : nullptr;
     mesh->colors = Flat<std::uint8_t>(m.colors);
     mesh->order = Flat<std::uint32_t>(d.order());
+    return Status::Ok();
+  });
+}
+
+sac_status sac_decoder_corner_normals(sac_decoder* decoder, const float** normals, uint32_t* count,
+                                      const uint32_t** triangle_normals) {
+  return Run(decoder, [&](sac::Decoder& d) {
+    if (normals == nullptr || count == nullptr || triangle_normals == nullptr) return Missing();
+    if (d.mesh() == nullptr) return Status::NeedMoreData();
+    const sac::Mesh& m = *d.mesh();
+    const bool of_corners = !m.normal_triangles.empty();
+    *normals = of_corners ? Flat<float>(m.normals) : nullptr;
+    *count = of_corners ? static_cast<std::uint32_t>(m.normals.size()) : 0;
+    *triangle_normals = Flat<std::uint32_t>(m.normal_triangles);
+    return Status::Ok();
+  });
+}
+
+sac_status sac_decoder_offset(sac_decoder* decoder, double offset[3]) {
+  return Run(decoder, [&](sac::Decoder& d) {
+    if (offset == nullptr) return Missing();
+    if (d.info() == nullptr) return Status::NeedMoreData();
+    std::copy(d.info()->offset.begin(), d.info()->offset.end(), offset);
     return Status::Ok();
   });
 }

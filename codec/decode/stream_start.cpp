@@ -65,6 +65,7 @@ Status StreamStart::DecodeIFrame(std::span<const std::uint8_t> payload) {
   out.uvs = std::move(decoded.uvs);
   out.uv_triangles = std::move(decoded.uv_triangles);
   out.normals = std::move(decoded.normals);
+  out.normal_triangles = std::move(decoded.normal_triangles);
   out.colors = std::move(decoded.colors);
   SAC_RETURN_IF_ERROR(BuildShape(*header_, std::move(decoded.mesh), syntax.harmonics, syntax.samples_per_harmonic,
                                  LimitsOfIFrame(limits_, payload.size()), shape_));

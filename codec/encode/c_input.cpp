@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "codec/encode/c_input.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <cstring>
+#include <iterator>
 #include <optional>
 
 namespace sac {
@@ -60,6 +62,7 @@ EncoderSettings ToEncoderSettings(const sac_encoder_settings& s) {
   to.index = s.index != 0;
   to.repeat_start = s.repeat_start;
   to.limits.memory = s.max_memory;
+  std::copy(std::begin(s.offset), std::end(s.offset), to.offset.begin());
   return to;
 }
 
@@ -81,6 +84,10 @@ Status ReadMesh(const sac_input_mesh* from, Mesh& mesh) {
   if (from->triangles > 0 && from->triangle_vertices == nullptr) return Missing("triangle_vertices");
   if ((from->uvs > 0) != (from->uv_values != nullptr)) return Missing("uv_values, or uvs is 0");
   if ((from->uv_values == nullptr) != (from->triangle_uvs == nullptr)) return Missing("triangle_uvs, or no uv_values");
+  if ((from->corner_normals > 0) != (from->triangle_normals != nullptr)) {
+    return Missing("triangle_normals, or corner_normals is 0");
+  }
+  if (from->corner_normals > 0 && from->normals == nullptr) return Missing("normals, or corner_normals is not 0");
   const Limits limits;  // the default limits: larger meshes are refused before their arrays are copied
   if (from->vertices > limits.vertices || from->triangles > limits.expert.triangles) {
     return Status::Limit("mesh: more vertices or triangles than streams may have");
@@ -90,7 +97,8 @@ Status ReadMesh(const sac_input_mesh* from, Mesh& mesh) {
   Copy(from->triangle_vertices, from->triangles, mesh.triangles);
   Copy(from->uv_values, from->uvs, mesh.uvs);
   Copy(from->triangle_uvs, from->triangles, mesh.uv_triangles);
-  Copy(from->normals, from->vertices, mesh.normals);
+  Copy(from->normals, from->corner_normals > 0 ? from->corner_normals : from->vertices, mesh.normals);
+  Copy(from->triangle_normals, from->triangles, mesh.normal_triangles);
   Copy(from->colors, from->vertices, mesh.colors);
   return Status::Ok();
 }

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -106,6 +105,9 @@ SequenceHeader HeaderOf(const Mesh& first, const EncoderSettings& settings, doub
   header.patch_size = header.vertices <= kLargePatchVertices ? kLargePatch : kSmallPatch;
   header.rotation_step = static_cast<float>(displacement_step);
   header.translation_step = header.displacement_step;
+  header.offset_x = settings.offset[0];
+  header.offset_y = settings.offset[1];
+  header.offset_z = settings.offset[2];
   return header;
 }
 
@@ -175,8 +177,7 @@ Status ReadEncoderPart(std::span<const std::uint8_t> bytes, EncodedStart& start)
   const std::size_t vertices = start.header.vertices;
   if (bytes.size() != kBound + kIndex * vertices + kCrc) return Status::Corrupt("stream start: length");
   ByteReader reader(bytes);
-  const std::uint64_t low = reader.U32(), high = reader.U32();
-  start.max_error = std::bit_cast<double>(low | high << 32);
+  start.max_error = reader.F64();
   start.order.resize(vertices);
   for (std::uint32_t& i : start.order) i = reader.U32();
   if (reader.U32() != Crc32(bytes.first(bytes.size() - kCrc))) return Status::Corrupt("stream start: wrong CRC-32");
@@ -208,9 +209,7 @@ std::vector<std::uint8_t> WriteStreamStart(const EncodedStart& start) {
   out.Bytes(WritePacket(PacketType::kHeader, WriteSequenceHeader(start.header)));
   out.Bytes(WritePacket(PacketType::kIFrame, start.i_frame));
   const std::size_t begin = out.size();
-  const auto bound = std::bit_cast<std::uint64_t>(start.max_error);
-  out.U32(static_cast<std::uint32_t>(bound));
-  out.U32(static_cast<std::uint32_t>(bound >> 32));
+  out.F64(start.max_error);
   for (const std::uint32_t i : start.order) out.U32(i);
   out.U32(Crc32(std::span(out.bytes()).subspan(begin)));
   return std::move(out.bytes());

@@ -8,26 +8,26 @@
 #include <map>
 #include <utility>
 
+#include "codec/encode/coded_normals.h"
 #include "codec/encode/position_search.h"
 
 namespace sac {
 namespace {
 
 constexpr int kUvBits = 12;
-constexpr int kNormalBits = 9;
 constexpr std::uint32_t kNoEntry = 0xffffffffu;
 
 // The part of a mesh that Draco is given: triangles with three different vertices, and the vertices they use.
 struct DracoInput {
   std::vector<std::uint32_t> vertices;               // input vertex per entry
   std::vector<Triangle> triangles;                   // of points
-  std::vector<std::array<std::uint32_t, 2>> points;  // entry and texture coordinate
+  std::vector<std::array<std::uint32_t, 3>> points;  // entry, texture coordinate and corner's normal
 };
 
-DracoInput SelectForDraco(const Mesh& input) {
+DracoInput SelectForDraco(const Mesh& input, const CodedNormals& normals) {
   DracoInput out;
   std::vector<std::uint32_t> entry(input.positions.size(), kNoEntry);
-  std::map<std::array<std::uint32_t, 2>, std::uint32_t> point_of;
+  std::map<std::array<std::uint32_t, 3>, std::uint32_t> point_of;
   for (std::size_t j = 0; j < input.triangles.size(); ++j) {
     const Triangle& t = input.triangles[j];
     if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0]) continue;
@@ -37,7 +37,8 @@ DracoInput SelectForDraco(const Mesh& input) {
         entry[t[k]] = static_cast<std::uint32_t>(out.vertices.size());
         out.vertices.push_back(t[k]);
       }
-      const std::array<std::uint32_t, 2> key = {entry[t[k]], input.uv_triangles.empty() ? 0 : input.uv_triangles[j][k]};
+      const std::array<std::uint32_t, 3> key = {entry[t[k]], input.uv_triangles.empty() ? 0 : input.uv_triangles[j][k],
+                                                normals.triangles.empty() ? 0 : normals.triangles[j][k]};
       const auto [at, is_new] = point_of.try_emplace(key, static_cast<std::uint32_t>(out.points.size()));
       if (is_new) out.points.push_back(key);
       points[k] = at->second;
@@ -46,7 +47,7 @@ DracoInput SelectForDraco(const Mesh& input) {
   return out;
 }
 
-// Adds an attribute whose values are per entry (`index` 0) or per texture coordinate (1).
+// Adds an attribute whose values are per entry (`index` 0), per texture coordinate (1) or per normal of corners (2).
 template <class Value>
 int AddAttribute(draco::Mesh& mesh, const DracoInput& input, draco::GeometryAttribute::Type type,
                  draco::DataType data_type, bool normalized, std::size_t index, const std::vector<Value>& values) {
@@ -74,7 +75,8 @@ std::vector<Value> Gather(const std::vector<Value>& values, const std::vector<st
 }
 
 // With `with_ids`, each entry also carries its number, to learn how Draco reorders and splits.
-Status RunDraco(const Mesh& input, const DracoInput& selected, bool with_ids, std::vector<std::uint8_t>& bytes) {
+Status RunDraco(const Mesh& input, const CodedNormals& normals, const DracoInput& selected, bool with_ids,
+                std::vector<std::uint8_t>& bytes) {
   draco::Mesh mesh;
   mesh.set_num_points(static_cast<std::uint32_t>(selected.points.size()));
   mesh.SetNumFaces(selected.triangles.size());
@@ -90,9 +92,11 @@ Status RunDraco(const Mesh& input, const DracoInput& selected, bool with_ids, st
   if (!input.uv_triangles.empty()) {
     uv = AddAttribute(mesh, selected, Attribute::TEX_COORD, draco::DT_FLOAT32, false, 1, input.uvs);
   }
-  if (!input.normals.empty()) {
+  if (!normals.triangles.empty()) {
+    normal = AddAttribute(mesh, selected, Attribute::NORMAL, draco::DT_FLOAT32, false, 2, normals.values);
+  } else if (!normals.values.empty()) {
     normal = AddAttribute(mesh, selected, Attribute::NORMAL, draco::DT_FLOAT32, false, 0,
-                          Gather(input.normals, selected.vertices));
+                          Gather(normals.values, selected.vertices));
   }
   if (!input.colors.empty()) {
     AddAttribute(mesh, selected, Attribute::COLOR, draco::DT_UINT8, true, 0, Gather(input.colors, selected.vertices));
@@ -128,13 +132,14 @@ Triangle Canonical(Triangle t) {
 
 // Codes what Draco can take and decodes it again, with the input vertex of each entry as its id. False when Draco fails
 // on this mesh: then the whole mesh is coded loose.
-bool TryDraco(const Mesh& input, const SequenceHeader& header, std::vector<std::uint8_t>& bytes, DracoMesh& draco) {
-  const DracoInput selected = SelectForDraco(input);
+bool TryDraco(const Mesh& input, const CodedNormals& normals, const SequenceHeader& header,
+              std::vector<std::uint8_t>& bytes, DracoMesh& draco) {
+  const DracoInput selected = SelectForDraco(input, normals);
   if (selected.triangles.empty()) return false;
   std::vector<std::uint8_t> bytes_with_ids;
   DracoMesh with_ids;
-  if (!RunDraco(input, selected, false, bytes).ok() || !DecodeDraco(bytes, header, draco).ok()) return false;
-  if (!RunDraco(input, selected, true, bytes_with_ids).ok() ||
+  if (!RunDraco(input, normals, selected, false, bytes).ok() || !DecodeDraco(bytes, header, draco).ok()) return false;
+  if (!RunDraco(input, normals, selected, true, bytes_with_ids).ok() ||
       !DecodeDraco(bytes_with_ids, header, with_ids, true).ok()) {
     return false;
   }
@@ -172,11 +177,13 @@ void CodePositions(const PositionTargets& targets, const DracoMesh& draco,
 Status EncodeIFrameMesh(const Mesh& input, const PositionTargets& targets, const SequenceHeader& header,
                         IFrameSyntax& syntax, DecodedIFrame& decoded, std::vector<std::uint32_t>& input_of_vertex) {
   DracoMesh draco;
-  if (!TryDraco(input, header, syntax.mesh, draco)) {
+  const CodedNormals normals = NormalsToCode(input);
+  if (!TryDraco(input, normals, header, syntax.mesh, draco)) {
     syntax.mesh.clear();
     draco = {};
   }
-  syntax.has_normals = !input.normals.empty();
+  // Only Draco codes normals of corners; one a vertex would be wrong there.
+  syntax.has_normals = !normals.values.empty() && (normals.triangles.empty() || !syntax.mesh.empty());
   syntax.has_colors = !input.colors.empty();
 
   // Vertices, in the numbering before components are sorted (spec.md 5.3): Draco's, then those it has not.
@@ -193,13 +200,14 @@ Status EncodeIFrameMesh(const Mesh& input, const PositionTargets& targets, const
     }
   }
   if (!syntax.mesh.empty()) CodePositions(targets, draco, vertex_of_input, vertices, header, syntax);
+  const std::vector<Vec3f> normal_of_input = NormalsOfVertices(input, normals);
   for (std::uint32_t i = 0; i < input.positions.size(); ++i) {
     if (vertex_of_input[i] != kNoEntry) continue;
     vertex_of_input[i] = vertices++;
     input_of_entry.push_back(i);
     LooseVertex& loose =
         syntax.loose_vertices.emplace_back(LooseVertex{Rounded(targets.cells[i], header.position_bits), {}, {}});
-    if (syntax.has_normals) loose.normal = input.normals[i];
+    if (syntax.has_normals) loose.normal = normal_of_input[i];
     if (syntax.has_colors) loose.color = input.colors[i];
   }
 

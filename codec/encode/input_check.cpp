@@ -8,6 +8,20 @@
 #include <string>
 
 namespace sac {
+namespace {
+
+// Whether `corners`, if there are any, are those of all triangles and index `count` values named `what`.
+Status CheckCorners(const Mesh& mesh, const std::vector<Triangle>& corners, std::size_t count,
+                    const std::string& what) {
+  if (corners.empty()) return Status::Ok();
+  if (corners.size() != mesh.triangles.size()) return Status::InvalidArgument(what + "s for some triangles only");
+  for (const Triangle& t : corners) {
+    if (std::max({t[0], t[1], t[2]}) >= count) return Status::InvalidArgument("a corner of a missing " + what);
+  }
+  return Status::Ok();
+}
+
+}  // namespace
 
 Status CheckSettings(const EncoderSettings& s) {
   const auto positive = [](const std::optional<double>& v) { return !v || (std::isfinite(*v) && *v > 0); };
@@ -31,6 +45,9 @@ Status CheckSettings(const EncoderSettings& s) {
   if (s.position_bits && !(*s.position_bits >= 1 && *s.position_bits <= 24)) {
     return Status::InvalidArgument("position bits must be from 1 to 24");
   }
+  if (!std::all_of(s.offset.begin(), s.offset.end(), [](double x) { return std::isfinite(x); })) {
+    return Status::InvalidArgument("the offset is not finite");
+  }
   if (s.frame_rate_denominator == 0) return Status::InvalidArgument("the frame rate's denominator is zero");
   return Status::Ok();
 }
@@ -45,17 +62,13 @@ Status CheckMesh(const Mesh& mesh, const Limits& limits) {
   for (const Triangle& t : mesh.triangles) {
     if (std::max({t[0], t[1], t[2]}) >= n) return Status::InvalidArgument("a triangle of a missing vertex");
   }
-  if (!mesh.uv_triangles.empty() && mesh.uv_triangles.size() != mesh.triangles.size()) {
-    return Status::InvalidArgument("texture coordinates for some triangles only");
-  }
-  for (const Triangle& t : mesh.uv_triangles) {
-    if (std::max({t[0], t[1], t[2]}) >= mesh.uvs.size()) {
-      return Status::InvalidArgument("a corner of a missing texture coordinate");
-    }
-  }
-  if ((!mesh.normals.empty() && mesh.normals.size() != n) || (!mesh.colors.empty() && mesh.colors.size() != n)) {
+  SAC_RETURN_IF_ERROR(CheckCorners(mesh, mesh.uv_triangles, mesh.uvs.size(), "texture coordinate"));
+  const bool of_vertices = mesh.normal_triangles.empty();
+  if ((of_vertices && !mesh.normals.empty() && mesh.normals.size() != n) ||
+      (!mesh.colors.empty() && mesh.colors.size() != n)) {
     return Status::InvalidArgument("normals or colours for some vertices only");
   }
+  SAC_RETURN_IF_ERROR(CheckCorners(mesh, mesh.normal_triangles, mesh.normals.size(), "normal"));
   // Draco ends the program when what it quantizes has no finite extent.
   const auto moderate = [](const auto& values) {
     return std::all_of(values.begin(), values.end(), [](const auto& value) {

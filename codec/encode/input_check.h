@@ -14,8 +14,8 @@ namespace sac {
 Status CheckSettings(const EncoderSettings& settings);
 
 // Returns kInvalidArgument when `mesh` has no vertices, indices of missing ones, attributes for a part of its vertices
-// or attributes that Draco cannot take, and kLimit when it is larger than `limits` allow. Positions are left to
-// CheckFinite().
+// or triangles, or attributes that Draco cannot take, and kLimit when it is larger than `limits` allow. Positions are
+// left to CheckFinite().
 Status CheckMesh(const Mesh& mesh, const Limits& limits);
 
 // Returns kInvalidArgument, naming the first such vertex, when a coordinate is not finite.

@@ -53,6 +53,8 @@ struct EncodedClip {
   DistortionMetrics distortion;      // of what a decoder makes of the stream; all zero where it was not measured
   // True if the input's texture coordinates could not be coded; known where the stream was decoded.
   bool lost_texture_coordinates = false;
+  // The same of normals: those of corners cannot be coded where Draco cannot code the mesh.
+  bool lost_normals = false;
 
   // Bits a vertex and frame, all bytes counted.
   double bpvf() const {

@@ -44,7 +44,9 @@ struct FrameInfo {
 };
 
 struct DecodedFrame : FrameInfo {
-  Positions positions;  // in the vertex order of the decoder's mesh, model units
+  // In the vertex order of the decoder's mesh, model units. StreamInfo::offset is what to add for the author's
+  // coordinates, in double precision; boxes are without it, too.
+  Positions positions;
 };
 
 enum class VertexFormat {
@@ -63,8 +65,8 @@ struct VertexBuffer {
 };
 
 struct FrameBuffers {
-  VertexBuffer positions;
-  VertexBuffer normals;  // of the vertices, area-weighted means of their triangles', of length 1
+  VertexBuffer positions;  // without StreamInfo::offset
+  VertexBuffer normals;    // of the vertices, area-weighted means of their triangles', of length 1
 };
 
 // A run of frames.
@@ -146,7 +148,7 @@ class Decoder {
   void Reset() noexcept;
 
   // What the stream says of itself, and the first frame's mesh with its static attributes; null before they have been
-  // decoded.
+  // decoded. Its normals are those of the first frame: FrameNormals gives those of others.
   const StreamInfo* info() const;
   const Mesh* mesh() const;
   // Per vertex its index in the input; empty when the stream does not keep the order.

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <functional>
 #include <memory>
@@ -33,6 +34,9 @@ struct EncoderSettings {
   std::optional<double> position_bits;     // of the I-frame: log2 of its extent in steps, 1..24
   std::uint32_t frame_rate_numerator = 0;  // frames per second; 0: unknown
   std::uint32_t frame_rate_denominator = 1;
+  // What was taken from the author's coordinates to have positions near the origin, where floats are exact, model
+  // units. It is only carried: decoders give it out beside the positions (StreamInfo::offset). Finite.
+  std::array<double, 3> offset = {};
   bool keep_order = false;  // put the input's vertex order in the stream
   bool index = true;        // end streams of several groups with where they begin
   // Header and I-frame come again before every so many groups, for those who join in the middle; 0: never.
@@ -66,7 +70,7 @@ struct FrameFault {
 class Encoder {
  public:
   // Codes the I-frame, computes the harmonics. kInvalidArgument for settings out of range, a mesh without vertices, a
-  // triangle of a missing vertex or coordinates that are not finite.
+  // triangle of a missing vertex, attributes that do not fit the mesh or coordinates that are not finite.
   static Status Create(const Mesh& first_frame, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder);
   ~Encoder();
   Encoder(const Encoder&) = delete;

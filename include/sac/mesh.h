@@ -35,7 +35,8 @@ struct Mesh {
 
   // Per vertex, or, where corners of a vertex have normals of their own (hard edges), per corner:
   // normal_triangles[j][k] indexes normals for corner k of triangle j, and is empty otherwise. Both are empty when
-  // there are none.
+  // there are none. A decoded mesh has normals of corners only where the corners of a vertex differ; a vertex without
+  // corners has none then.
   std::vector<Vec3f> normals;
   std::vector<Triangle> normal_triangles;
 

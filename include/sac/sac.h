@@ -93,7 +93,7 @@ typedef struct sac_vertex_buffer {
 } sac_vertex_buffer;
 
 typedef struct sac_frame_buffers {
-  sac_vertex_buffer positions; /* model units */
+  sac_vertex_buffer positions; /* model units, without sac_decoder_offset() */
   sac_vertex_buffer normals;   /* of length 1, computed from the frame's triangles */
 } sac_frame_buffers;
 
@@ -115,14 +115,14 @@ typedef struct sac_mesh {
   const uint32_t* triangle_vertices; /* 3 a triangle */
   const float* uv_values;            /* 2 a texture coordinate */
   const uint32_t* triangle_uvs;      /* 3 a triangle: indices of texture coordinates */
-  const float* normals;              /* 3 a vertex, of the first frame */
-  const uint8_t* colors;             /* red, green, blue, alpha of a vertex */
-  const uint32_t* order;             /* per vertex its index in the encoder's input */
+  const float* normals;  /* 3 a vertex, of the first frame; null also where corners have normals of their own */
+  const uint8_t* colors; /* red, green, blue, alpha of a vertex */
+  const uint32_t* order; /* per vertex its index in the encoder's input */
 } sac_mesh;
 
 typedef struct sac_decoder sac_decoder;
 
-/* The version of the library, such as "0.1.0", and of the streams that it decodes, such as "0.7". */
+/* The version of the library, such as "0.1.0", and of the streams that it decodes, such as "0.8". */
 SAC_API const char* sac_version(void);
 SAC_API const char* sac_stream_version(void);
 
@@ -150,6 +150,16 @@ SAC_API sac_status sac_decoder_finish(sac_decoder* decoder);
 
 /* The triangles and attributes; SAC_NEED_MORE_DATA before they have been sent. */
 SAC_API sac_status sac_decoder_mesh(sac_decoder* decoder, sac_mesh* mesh);
+
+/* The first frame's normals where corners of a vertex have normals of their own (hard edges): 3 floats for each of
+ * *count normals, and 3 a triangle in *triangle_normals, the indices of its corners' normals. Both are null, and *count
+ * is 0, where sac_mesh has the normals of vertices or there are none. SAC_NEED_MORE_DATA as sac_decoder_mesh(). */
+SAC_API sac_status sac_decoder_corner_normals(sac_decoder* decoder, const float** normals, uint32_t* count,
+                                              const uint32_t** triangle_normals);
+
+/* What to add to all positions, x, y and z, to have the author's coordinates, model units; zeros in most streams. They
+ * may be so large that a float cannot hold the sum. SAC_NEED_MORE_DATA before the sequence header has been sent. */
+SAC_API sac_status sac_decoder_offset(sac_decoder* decoder, double offset[3]);
 
 /* Goes to a frame, or to the one that is shown at so many seconds: the next bytes sent must be those of the stream from
  * *byte on, which counts from the first byte that was sent, or that an index counts from. With a frame_step the next of

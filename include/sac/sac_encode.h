@@ -65,9 +65,10 @@ typedef struct sac_encoder_settings {
   uint64_t max_memory;             /* bytes that the decoders it is for may hold (spec.md 9) */
   sac_progress progress;           /* null: none */
   void* user;                      /* given to `progress` */
+  double offset[3]; /* taken from the author's coordinates before; carried to the decoders: sac_decoder_offset() */
 } sac_encoder_settings;
 
-/* A first frame. Pointers that may be null are null where the mesh has no such attribute. */
+/* A first frame; set all of it to 0 before. Pointers that may be null are null where the mesh has no such attribute. */
 typedef struct sac_input_mesh {
   uint32_t vertices;
   uint32_t triangles;
@@ -77,8 +78,12 @@ typedef struct sac_input_mesh {
   const uint32_t* triangle_vertices; /* 3 a triangle */
   const float* uv_values;            /* 2 a texture coordinate; may be null */
   const uint32_t* triangle_uvs;      /* 3 a triangle: indices of texture coordinates; may be null */
-  const float* normals;              /* 3 a vertex; may be null */
+  const float* normals;              /* 3 a vertex, or 3 for each of corner_normals; may be null */
   const uint8_t* colors;             /* red, green, blue, alpha of a vertex; may be null */
+  /* Where corners of a vertex have normals of their own (hard edges): how many there are, else 0, and 3 a triangle, the
+   * indices of its corners' normals, else null. */
+  uint32_t corner_normals;
+  const uint32_t* triangle_normals;
 } sac_input_mesh;
 
 /* The bytes of a stream by what they say; they add up to its size. */

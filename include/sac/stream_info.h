@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <array>
 #include <cstdint>
 
 namespace sac {
@@ -25,6 +26,9 @@ struct StreamInfo {
   double displacement_step = 0;  // model units
   double detail_step = 0;        // model units; 0: the stream has no detail plane
   double correction_step = 0;    // model units; 0: the stream has no correction plane
+  // What to add to all positions to have the author's coordinates, model units. They may be so large that a float
+  // cannot hold the sum.
+  std::array<double, 3> offset = {};
 
   // 0 where the frame rate is unknown.
   double frames_per_second() const {

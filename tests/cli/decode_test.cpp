@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <filesystem>
+#include <memory>
 #include <set>
+#include <sstream>
 
 #include "files/cache_file.h"
 #include "files/mesh_file.h"
+#include "sac/encoder.h"
 #include "tests/cli/sac_command.h"
+#include "tests/hard_cube.h"
 
 namespace sac {
 namespace {
@@ -106,6 +111,111 @@ TEST_F(DecodeTest, NormalsFollowTheVertices) {
   for (std::size_t v = 0; v < in.normals.size(); ++v) {
     for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(in.normals[v][a], out.normals[v][a], 0.05) << v;
   }
+}
+
+// A cube with hard edges that turns by 90 degrees, in a stream.
+class DecodeCubeTest : public DecodeTest {
+ protected:
+  // `at`: the stream's offset.
+  void EncodeCube(const std::array<double, 3>& at) const {
+    const Mesh cube = HardCubeMesh();
+    EncoderSettings settings;
+    settings.quality = 90;
+    settings.keep_order = true;
+    settings.offset = at;
+    std::unique_ptr<Encoder> encoder;
+    ASSERT_TRUE(Encoder::Create(cube, settings, encoder).ok());
+    Positions turned = cube.positions;
+    ASSERT_TRUE(encoder->Send(turned).ok());
+    for (Vec3f& p : turned) p = {-p[1], p[0], p[2]};
+    ASSERT_TRUE(encoder->Send(turned).ok());
+    ASSERT_TRUE(encoder->Finish().ok());
+    const std::vector<std::uint8_t> bytes = encoder->TakeBytes();
+    directory_.Write("cube.sac", std::string(bytes.begin(), bytes.end()));
+  }
+
+  // The normals of the triangles' corners in an OBJ file, and of how many different indices.
+  std::vector<std::array<Vec3f, 3>> CornerNormals(const std::string& name, std::size_t& different) const {
+    std::vector<Vec3f> normals;
+    std::vector<std::array<Vec3f, 3>> corners;
+    std::set<std::size_t> indices;
+    std::istringstream text(Read(name));
+    for (std::string line; std::getline(text, line);) {
+      std::istringstream words(line);
+      std::string word;
+      words >> word;
+      if (word == "vn") words >> normals.emplace_back()[0] >> normals.back()[1] >> normals.back()[2];
+      if (word != "f") continue;
+      for (Vec3f& n : corners.emplace_back()) {
+        words >> word;
+        const std::size_t index = std::stoul(word.substr(word.find("//") + 2));
+        indices.insert(index);
+        n = normals.at(index - 1);
+      }
+    }
+    different = indices.size();
+    return corners;
+  }
+};
+
+TEST_F(DecodeCubeTest, HardEdgesTurnWithTheFrame) {
+  EncodeCube({});
+  EXPECT_EQ(Good({"decode", "cube.sac", "-o", "o_%d.obj"}), "");
+  std::size_t different = 0;
+  const auto first = CornerNormals("o_0.obj", different);
+  EXPECT_EQ(different, 24u);
+  const auto second = CornerNormals("o_1.obj", different);
+  EXPECT_EQ(different, 24u);
+  ASSERT_EQ(first.size(), 12u);
+  ASSERT_EQ(second.size(), 12u);
+  for (std::size_t j = 0; j < 12; ++j) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      EXPECT_EQ(first[j][k], first[j][0]);  // each face is flat
+      const Vec3f& n = first[j][k];
+      EXPECT_NEAR(std::max({std::abs(n[0]), std::abs(n[1]), std::abs(n[2])}), 1, 0.005);
+      const Vec3f turned = {-n[1], n[0], n[2]};
+      for (std::size_t a = 0; a < 3; ++a) EXPECT_NEAR(second[j][k][a], turned[a], 0.05);
+    }
+  }
+  // One frame of the middle is the same whether those before it are written or not.
+  Good({"decode", "cube.sac", "-o", "one.obj", "--frames", "1"});
+  EXPECT_EQ(Read("one.obj"), Read("o_1.obj"));
+}
+
+TEST_F(DecodeCubeTest, OneNormalAVertexIsNotInventedForHardEdges) {
+  EncodeCube({});
+  for (const std::string name : {"o_%d.ply", "o_%d.off"}) {
+    const Outcome outcome = Sac({"decode", "cube.sac", "-o", name});
+    EXPECT_EQ(outcome.code, 0);
+    EXPECT_EQ(outcome.err, "sac: warning: o_0" + name.substr(4) +
+                               ": corners of a vertex have normals of their own, which the format cannot hold; written "
+                               "without\n");
+    EXPECT_TRUE(Load("o_1" + name.substr(4)).normals.empty());
+  }
+}
+
+TEST_F(DecodeCubeTest, AnOffsetComesBack) {
+  EncodeCube({});
+  Good({"decode", "cube.sac", "-o", "near.obj", "--frames", "0"});
+  EncodeCube({500000.5, 5600000.25, 301});
+  EXPECT_EQ(GoodJson({"info", "cube.sac", "--json"})["header"]["offset_y"], 5600000.25);
+  Good({"decode", "cube.sac", "-o", "far.obj", "--frames", "0"});
+  std::istringstream near(Read("near.obj")), far(Read("far.obj"));
+  for (int v = 0; v < 8; ++v) {
+    std::string keyword;
+    float a[3];
+    double b[3];
+    near >> keyword >> a[0] >> a[1] >> a[2];
+    far >> keyword >> b[0] >> b[1] >> b[2];
+    EXPECT_EQ(a[0] + 500000.5, b[0]);
+    EXPECT_EQ(a[1] + 5600000.25, b[1]);
+    EXPECT_EQ(a[2] + 301.0, b[2]);
+  }
+  const Outcome outcome = Sac({"decode", "cube.sac", "-o", "far.pc2"});
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(
+      outcome.err.rfind("sac: warning: far.pc2: the format's 32-bit floats round the coordinates by up to 0.2", 0), 0u)
+      << outcome.err;
 }
 
 TEST_F(DecodeTest, ColorsFollowTheVertices) {

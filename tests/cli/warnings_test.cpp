@@ -3,6 +3,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <sstream>
 
 #include "files/cache_file.h"
 #include "tests/cli/sac_command.h"
@@ -76,6 +77,61 @@ TEST_F(WarningsTest, NumbersOfASequence) {
                 gap + "the stream goes on without [--strict]");
   Good({"decode", "skip.sac", "-o", "g_$F3.obj", "--first-number", "101", "--frames", "0:2"});
   EXPECT_TRUE(std::filesystem::exists(Path("g_101.obj")) && std::filesystem::exists(Path("g_102.obj")));
+}
+
+TEST_F(WarningsTest, CachesThatAreCutShort) {
+  directory_.Write("cut.pc2", Read("in.pc2").substr(0, Read("in.pc2").size() - 100));
+  const Outcome refused = Sac({"encode", "in.obj", "cut.pc2", "-o", "cut.sac"});
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_NE(refused.err.find("the file has 11 whole frames"), std::string::npos) << refused.err;
+  const std::string told = Told({"encode", "in.obj", "cut.pc2", "-o", "cut.sac", "--skip-damage", "--harmonics", "30"});
+  EXPECT_EQ(told.rfind("sac: warning: cut.pc2: ", 0), 0u) << told;
+  EXPECT_NE(Good({"info", "cut.sac"}).find("frames                   11"), std::string::npos);
+}
+
+// A coordinate of 5.6e6 has steps of 0.5 as float32.
+TEST_F(WarningsTest, FarCoordinatesComeBack) {
+  for (int f = 0; f < 2; ++f) {
+    std::string obj;
+    for (const char* xyz : {"0.25", "1.25", "0.5"}) {
+      obj += "v 500000.125 " + std::to_string(5600000 + f) + (xyz + 1) + " " + xyz + "\n";
+    }
+    directory_.Write("far_" + std::to_string(f) + ".obj", obj + "f 1 2 3\n");
+  }
+  Told({"encode", "far_%d.obj", "-o", "far.sac", "--keep-order", "--max-error", "1e-3"});
+  Good({"decode", "far.sac", "-o", "back_%d.obj"});
+  const auto number = [&](const std::string& file, std::size_t index) {
+    std::istringstream in(Read(file).substr(1));
+    double x = 0;
+    for (std::size_t i = 0; i <= index; ++i) in >> x;
+    return x;
+  };
+  for (const char* f : {"0", "1"}) {
+    for (std::size_t i = 0; i < 3; ++i) {
+      EXPECT_NEAR(number(std::string("back_") + f + ".obj", i), number(std::string("far_") + f + ".obj", i), 1e-3);
+    }
+  }
+  const std::string told = Told({"decode", "far.sac", "-o", "back.pc2"});
+  EXPECT_NE(told.find("32-bit floats round the coordinates by up to 0."), std::string::npos) << told;
+}
+
+TEST_F(WarningsTest, AxesAndUnits) {
+  Encode("clip.sac");
+  Good({"decode", "clip.sac", "-o", "a.pc2"});
+  Good({"decode", "clip.sac", "-o", "b.pc2", "--up", "y:z", "--units", "m:cm"});
+  std::unique_ptr<CacheReader> a, b;
+  ASSERT_TRUE(CacheReader::Open(Path("a.pc2"), a).ok() && CacheReader::Open(Path("b.pc2"), b).ok());
+  Positions from, to;
+  ASSERT_TRUE(a->Read(7, from).ok() && b->Read(7, to).ok());
+  for (std::size_t v = 0; v < from.size(); ++v) {
+    EXPECT_FLOAT_EQ(to[v][0], 100 * from[v][0]);
+    EXPECT_FLOAT_EQ(to[v][1], -100 * from[v][2]);
+    EXPECT_FLOAT_EQ(to[v][2], 100 * from[v][1]);
+  }
+  ExpectFailure({"decode", "clip.sac", "-o", "c.pc2", "--up", "x:z"}, 2,
+                "--up: 'x:z' is neither y:z nor z:y (see sac decode --help)");
+  ExpectFailure({"decode", "clip.sac", "-o", "c.pc2", "--units", "m"}, 2,
+                "--units: 'm' is no pair of mm, cm, m, km, in, ft and yd such as cm:m (see sac decode --help)");
 }
 
 // Two squares meet at two points that are there twice. They turn against each other about the line between them.

@@ -9,6 +9,7 @@
 #include <string>
 
 #include "sac/sac_encode.h"
+#include "tests/hard_cube.h"
 #include "tests/test_clips.h"
 
 namespace sac {
@@ -42,6 +43,10 @@ sac_input_mesh InputOf(const Mesh& mesh) {
   input.triangle_uvs = mesh.uv_triangles.empty() ? nullptr : mesh.uv_triangles[0].data();
   input.normals = mesh.normals.empty() ? nullptr : mesh.normals[0].data();
   input.colors = mesh.colors.empty() ? nullptr : mesh.colors[0].data();
+  if (!mesh.normal_triangles.empty()) {
+    input.corner_normals = static_cast<std::uint32_t>(mesh.normals.size());
+    input.triangle_normals = mesh.normal_triangles[0].data();
+  }
   return input;
 }
 
@@ -108,6 +113,10 @@ TEST(CEncoder, PassesEachSettingOn) {
       {[](auto& s) { s.keep_order = 1; }, [](auto& s) { s.keep_order = true; }},
       {[](auto& s) { s.index = 0; }, [](auto& s) { s.index = false; }},
       {[](auto& s) { s.repeat_start = 1; }, [](auto& s) { s.repeat_start = 1; }},
+      {[](auto& s) { s.offset[1] = 5.6e6; },
+       [](auto& s) {
+         s.offset = {0, 5.6e6, 0};
+       }},
   };
   const std::vector<std::uint8_t> plain = Encode(clip, SameSettings()).bytes;
   for (std::size_t i = 0; i < changes.size(); ++i) {
@@ -120,6 +129,33 @@ TEST(CEncoder, PassesEachSettingOn) {
     EXPECT_EQ(bytes, Encode(clip, cxx).bytes);
     EXPECT_NE(bytes, plain);
   }
+}
+
+TEST(CEncoder, TakesNormalsOfCorners) {
+  const Mesh cube = HardCubeMesh();
+  const Clip clip{cube, {cube.positions}};
+  const std::vector<std::uint8_t> bytes = CEncoding(clip, nullptr).bytes;
+  EXPECT_EQ(bytes, Encode(clip, {}).bytes);
+  sac_decoder* decoder = nullptr;
+  ASSERT_EQ(sac_decoder_open(&decoder, nullptr), SAC_OK);
+  const float* normals = nullptr;
+  const std::uint32_t* corners = nullptr;
+  std::uint32_t count = 0;
+  EXPECT_EQ(sac_decoder_corner_normals(decoder, &normals, &count, &corners), SAC_NEED_MORE_DATA);
+  const std::uint8_t* data = bytes.data();
+  for (std::size_t size = bytes.size(); size > 0 && sac_decoder_receive(decoder, nullptr, nullptr) != SAC_OK;) {
+    ASSERT_EQ(sac_decoder_send(decoder, &data, &size), SAC_OK);
+  }
+  sac_mesh mesh;
+  ASSERT_EQ(sac_decoder_mesh(decoder, &mesh), SAC_OK);
+  EXPECT_EQ(mesh.normals, nullptr);  // of vertices there are none
+  ASSERT_EQ(sac_decoder_corner_normals(decoder, &normals, &count, &corners), SAC_OK);
+  EXPECT_EQ(count, 24u);
+  const Mesh decoded = Decode(bytes).mesh;
+  EXPECT_EQ(std::memcmp(normals, decoded.normals.data(), sizeof(Vec3f) * count), 0);
+  EXPECT_EQ(std::memcmp(corners, decoded.normal_triangles.data(), sizeof(Triangle) * mesh.triangles), 0);
+  EXPECT_EQ(sac_decoder_corner_normals(decoder, nullptr, &count, &corners), SAC_INVALID_ARGUMENT);
+  sac_decoder_close(decoder);
 }
 
 TEST(CEncoder, TakesAttributesAndStrides) {

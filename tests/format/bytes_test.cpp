@@ -98,6 +98,7 @@ TEST(ByteReader, ReadsWhatIsWritten) {
   out.U32(0x01020304);
   out.F32(-0.1f);
   out.F32(std::numeric_limits<float>::infinity());
+  out.F64(-0.1);
   out.Varint(123456);
   out.Bytes(Bytes{9, 8, 7});
   EXPECT_EQ(out.size(), out.bytes().size());
@@ -108,6 +109,7 @@ TEST(ByteReader, ReadsWhatIsWritten) {
   EXPECT_EQ(in.U32(), 0x01020304u);
   EXPECT_EQ(in.F32(), -0.1f);
   EXPECT_TRUE(std::isinf(in.F32()));
+  EXPECT_EQ(in.F64(), -0.1);
   EXPECT_EQ(in.Varint(), 123456u);
   EXPECT_EQ(in.position(), out.size() - 3);
   const auto rest = in.Bytes(3);

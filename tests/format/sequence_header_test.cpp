@@ -78,6 +78,21 @@ TEST(SequenceHeader, ExtremesComeBack) {
   ExpectRoundTrip(h);
 }
 
+TEST(SequenceHeader, AnOffsetIsThereOrNot) {
+  SequenceHeader h = Valid(), back;
+  const std::size_t size = WriteSequenceHeader(h).size();
+  h.offset_x = h.offset_y = -0.0;
+  EXPECT_EQ(WriteSequenceHeader(h).size(), size);
+  h.offset_x = 0.1;
+  h.offset_z = -1e300;
+  EXPECT_EQ(WriteSequenceHeader(h).size(), size + 24);
+  ASSERT_TRUE(ParseSequenceHeader(WriteSequenceHeader(h), {}, back).ok());
+  EXPECT_EQ(InfoOf(back).offset, (std::array<double, 3>{0.1, 0, -1e300}));
+  std::vector<std::uint8_t> zero = WriteSequenceHeader(Valid());
+  zero.resize(size + 24);
+  EXPECT_EQ(ParseSequenceHeader(zero, {}, back).message(), "sequence header: an offset of zero");
+}
+
 TEST(SequenceHeader, EveryRuleIsChecked) {
   const float nan = std::numeric_limits<float>::quiet_NaN(), infinity = std::numeric_limits<float>::infinity();
   const std::map<std::string, std::function<void(SequenceHeader&)>> breaks = {
@@ -103,6 +118,8 @@ TEST(SequenceHeader, EveryRuleIsChecked) {
       {"motion step", [](auto& h) { h.motion_step = -0.1f; }},
       {"displacement step", [=](auto& h) { h.displacement_step = nan; }},
       {"rotation step", [](auto& h) { h.rotation_step = -0.0f; }},
+      {"offset x", [](auto& h) { h.offset_x = std::numeric_limits<double>::quiet_NaN(); }},
+      {"offset z", [](auto& h) { h.offset_z = std::numeric_limits<double>::infinity(); }},
       {"translation step", [=](auto& h) { h.translation_step = -infinity; }},
   };
   for (const auto& [rule, apply] : breaks) {
@@ -139,12 +156,15 @@ TEST(SequenceHeader, LimitsAreRespected) {
   EXPECT_EQ(Parse(h, limits).code(), StatusCode::kLimit);
 }
 
+// One without an offset, and one with.
 TEST(SequenceHeader, HasOneLength) {
-  const auto bytes = WriteSequenceHeader(Valid());
+  SequenceHeader moved = Valid();
+  moved.offset_y = 1;
+  const auto bytes = WriteSequenceHeader(moved), plain = WriteSequenceHeader(Valid());
   SequenceHeader back;
   for (std::size_t size = 0; size < bytes.size(); ++size) {
     const std::vector<std::uint8_t> prefix(bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(size));
-    EXPECT_EQ(ParseSequenceHeader(prefix, {}, back).code(), StatusCode::kCorrupt) << size;
+    EXPECT_EQ(ParseSequenceHeader(prefix, {}, back).ok(), size == plain.size()) << size;
   }
   auto longer = bytes;
   longer.push_back(0);

@@ -52,7 +52,8 @@ Outcome Decode(std::span<const std::uint8_t> stream, std::mt19937* chunks) {
   FUZZ_REQUIRE(mesh.triangles.size() == decoder.info()->triangles);
   FUZZ_REQUIRE(below(mesh.triangles, mesh.positions.size()));
   FUZZ_REQUIRE(below(mesh.uv_triangles, mesh.uvs.size()));
-  FUZZ_REQUIRE(mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
+  FUZZ_REQUIRE(below(mesh.normal_triangles, mesh.normals.size()));
+  FUZZ_REQUIRE(!mesh.normal_triangles.empty() || mesh.normals.empty() || mesh.normals.size() == mesh.positions.size());
   FUZZ_REQUIRE(mesh.colors.empty() || mesh.colors.size() == mesh.positions.size());
   FUZZ_REQUIRE(decoder.order().empty() || decoder.order().size() == mesh.positions.size());
   return out;

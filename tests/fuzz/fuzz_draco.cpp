@@ -20,7 +20,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FUZZ_REQUIRE(below(mesh.triangles, mesh.entries));
   FUZZ_REQUIRE(below(mesh.uv_triangles, mesh.uvs.size()));
   FUZZ_REQUIRE(mesh.uv_triangles.empty() || mesh.uv_triangles.size() == mesh.triangles.size());
-  FUZZ_REQUIRE(mesh.normals.empty() || mesh.normals.size() == mesh.entries);
+  FUZZ_REQUIRE(below(mesh.normal_triangles, mesh.normals.size()));
+  FUZZ_REQUIRE(mesh.normal_triangles.empty() || mesh.normal_triangles.size() == mesh.triangles.size());
   FUZZ_REQUIRE(mesh.colors.empty() || mesh.colors.size() == mesh.entries);
   return 0;
 }

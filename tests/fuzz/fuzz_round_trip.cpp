@@ -39,6 +39,12 @@ Mesh MakeMesh(Choices& in) {
     mesh.normals.resize(mesh.positions.size());
     for (Vec3f& n : mesh.normals) n = {1.0f * in.Signed(), 1.0f * in.Signed(), 1.0f * in.Signed()};
   }
+  if ((attributes & 8) != 0 && !mesh.normals.empty()) {
+    mesh.normal_triangles.resize(mesh.triangles.size());
+    for (Triangle& t : mesh.normal_triangles) {
+      for (std::uint32_t& i : t) i = in.U8() % static_cast<std::uint32_t>(mesh.normals.size());
+    }
+  }
   if ((attributes & 4) != 0) {
     mesh.colors.resize(mesh.positions.size());
     for (auto& c : mesh.colors) c = {in.U8(), in.U8(), in.U8(), in.U8()};

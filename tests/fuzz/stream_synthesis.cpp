@@ -28,7 +28,7 @@ std::uint32_t AnySize(std::mt19937& random) { return static_cast<std::uint32_t>(
 float AnyStep(std::mt19937& random) { return std::ldexp(1.0f, static_cast<int>(random() % 200) - 100); }
 
 void MutateHeader(SequenceHeader& h, std::mt19937& random) {
-  switch (random() % 8) {
+  switch (random() % 9) {
     case 0:
       h.reference_shape ^= 1;
       break;
@@ -49,6 +49,9 @@ void MutateHeader(SequenceHeader& h, std::mt19937& random) {
       break;
     case 6:
       h.position_bits = static_cast<std::uint8_t>(1 + random() % 24);
+      break;
+    case 7:
+      h.offset_x = random() % 2 ? 0 : static_cast<double>(AnyStep(random));
       break;
     default:
       (random() % 2 ? h.motion_step : h.displacement_step) = AnyStep(random);

@@ -40,6 +40,10 @@ class ByteReader:
         """spec.md 2.3: a binary32, converted to binary64."""
         return struct.unpack("<f", self.bytes(4))[0]
 
+    def f64(self) -> float:
+        """spec.md 2.3: a binary64."""
+        return struct.unpack("<d", self.bytes(8))[0]
+
     def varint(self) -> int:
         """spec.md 2.2: 7 bits a byte, least significant first, 5 bytes at most, one spelling for every value."""
         value = 0

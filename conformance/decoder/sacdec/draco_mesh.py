@@ -23,8 +23,8 @@ WANTED = {POSITION: (INT32, 3), NORMAL: (FLOAT32, 3), COLOR: (UINT8, 4), TEX_COO
 class DracoMesh:
     """Entries and triangles of spec.md 5.1; no entries and no triangles if there is no Draco mesh.
 
-    `triangles` [m, 3] are entries. `normals` [entries, 3], `colors` [entries, 4], `uvs` [values, 2] and `uv_triangles`
-    [m, 3] are None if the mesh has none.
+    `triangles` [m, 3] are entries. `normals` [m, 3, 3], those of the corners, `colors` [entries, 4], `uvs` [values, 2]
+    and `uv_triangles` [m, 3] are None if the mesh has none.
     """
 
     entries: int = 0
@@ -84,7 +84,7 @@ def _floats(attribute: dict) -> np.ndarray:
 
 
 def _at_last_corner(entries: int, corner_entries: np.ndarray, corner_values: np.ndarray) -> np.ndarray:
-    """An entry's normal or colour "is the one of the last of its corners"; zeros without a corner."""
+    """An entry's colour "is the one of the last of its corners"; zeros without a corner."""
     result = np.zeros((entries, corner_values.shape[-1]), corner_values.dtype)
     for entry, value in zip(corner_entries.ravel(), corner_values.reshape(-1, corner_values.shape[-1])):
         result[entry] = value
@@ -116,8 +116,7 @@ def decode_draco_mesh(data: bytes, triangles: int) -> DracoMesh:
         entries=len(attributes[POSITION]["values"]), triangles=_corner_indices(attributes[POSITION], points)
     )
     if normals := attributes.get(NORMAL):
-        at_corners = _floats(normals)[_corner_indices(normals, points)]
-        mesh.normals = _at_last_corner(mesh.entries, mesh.triangles, at_corners)
+        mesh.normals = _floats(normals)[_corner_indices(normals, points)]
     if colors := attributes.get(COLOR):
         at_corners = np.array(colors["values"], np.uint8).reshape(-1, 4)[_corner_indices(colors, points)]
         mesh.colors = _at_last_corner(mesh.entries, mesh.triangles, at_corners)

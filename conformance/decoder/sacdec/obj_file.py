@@ -13,21 +13,28 @@ def _lines(keyword: str, rows: np.ndarray) -> list[str]:
     return [" ".join([keyword, *(f"{x:.9g}" for x in row)]) for row in rows.astype(np.float32).tolist()]
 
 
-def _faces(clip: Clip) -> list[str]:
-    corners = (clip.mesh.triangles + 1).tolist()
-    if clip.mesh.uv_triangles is None:
-        return ["f %d %d %d" % tuple(corner) for corner in corners]
-    uvs = (clip.mesh.uv_triangles + 1).tolist()
-    return ["f %d/%d %d/%d %d/%d" % tuple(sum(zip(a, b), ())) for a, b in zip(corners, uvs)]
+def _faces(clip: Clip, with_normals: bool) -> list[str]:
+    mesh = clip.mesh
+    normals = mesh.triangles if mesh.normal_triangles is None else mesh.normal_triangles
+    columns = [mesh.triangles]
+    pattern = "%d"
+    if mesh.uv_triangles is not None:
+        columns.append(mesh.uv_triangles)
+        pattern += "/%d"
+    if with_normals:
+        columns.append(normals)
+        pattern += "/%d" if mesh.uv_triangles is not None else "//%d"
+    line = "f " + " ".join([pattern] * 3)
+    return [line % tuple(corners) for corners in (np.stack(columns, 2) + 1).reshape(-1, 3 * len(columns)).tolist()]
 
 
 def write_frames(clip: Clip, directory: Path) -> None:
-    """frame_0000.obj and so on, vertices by their final numbers (spec.md 5.3). Normals are the first frame's, so only
-    that one has them."""
+    """frame_0000.obj and so on, vertices by their final numbers (spec.md 5.3), without the offset. Normals are the first
+    frame's, so only that one has them."""
     directory.mkdir(parents=True, exist_ok=True)
     still = [] if clip.mesh.uvs is None else _lines("vt", clip.mesh.uvs)
-    faces = _faces(clip)
     for index, positions in enumerate(clip.frames):
-        normals = _lines("vn", clip.mesh.normals) if index == 0 and clip.mesh.normals is not None else []
-        text = "\n".join([*_lines("v", positions), *still, *normals, *faces]) + "\n"
+        with_normals = index == 0 and clip.mesh.normals is not None
+        normals = _lines("vn", clip.mesh.normals) if with_normals else []
+        text = "\n".join([*_lines("v", positions), *still, *normals, *_faces(clip, with_normals)]) + "\n"
         (directory / f"frame_{index:04d}.obj").write_text(text)

@@ -8,7 +8,7 @@ from .byte_reader import ByteReader
 from .errors import require
 from .limits import Limits
 
-VERSION = (0, 7)
+VERSION = (0, 8)
 
 
 @dataclass(frozen=True)
@@ -32,10 +32,11 @@ class SequenceHeader:
     correction_step: float
     rotation_step: float
     translation_step: float
+    offset: tuple[float, float, float]
 
 
 def parse_sequence_header(payload: bytes, limits: Limits) -> SequenceHeader:
-    """spec.md 4, in the order of the table there; the rules are R11 to R23, R61 and R62."""
+    """spec.md 4, in the order of the table there; the rules are R11 to R23, R61, R62 and R68."""
     reader = ByteReader(payload, end_rule=12, varint_rule=12)
     version = (reader.u8(), reader.u8())
     require(version == VERSION, 11, "version %d.%d" % version)
@@ -57,10 +58,21 @@ def parse_sequence_header(payload: bytes, limits: Limits) -> SequenceHeader:
         correction_step=reader.f32(),
         rotation_step=reader.f32(),
         translation_step=reader.f32(),
+        offset=_offset(reader),
     )
     require(reader.remaining() == 0, 12, "bytes after the sequence header")
     _check(header, limits)
     return header
+
+
+def _offset(reader: ByteReader) -> tuple[float, float, float]:
+    """The last three elements, or three zeros where they are left out."""
+    if reader.remaining() == 0:
+        return (0.0, 0.0, 0.0)
+    offset = (reader.f64(), reader.f64(), reader.f64())
+    require(all(map(math.isfinite, offset)), 68, "the offset is not finite")
+    require(any(x != 0 for x in offset), 68, "an offset of three zeros")
+    return offset
 
 
 def _check(header: SequenceHeader, limits: Limits) -> None:

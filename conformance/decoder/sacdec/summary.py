@@ -23,11 +23,15 @@ def summary(clip: Clip) -> dict:
         "triangles_crc32": words_crc32(mesh.triangles),
         "coefficients_crc32": f"{clip.coefficients_crc32:08x}",
     }
+    if any(clip.header.offset):
+        result["offset"] = list(clip.header.offset)
     if mesh.uvs is not None:
         result["uvs"] = len(mesh.uvs)
         result["uv_triangles_crc32"] = words_crc32(mesh.uv_triangles)
     if mesh.normals is not None:
         result["normals"] = len(mesh.normals)
+    if mesh.normal_triangles is not None:
+        result["normal_triangles_crc32"] = words_crc32(mesh.normal_triangles)
     if mesh.colors is not None:
         result["colors_crc32"] = words_crc32(mesh.colors)
     if mesh.order is not None:

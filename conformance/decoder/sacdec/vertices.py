@@ -16,7 +16,8 @@ class Mesh:
     """The mesh of a clip, in the final numbering of 5.3.
 
     Positions are `grid` [n, 3], integers. Components and patches are runs of vertices, from `components[i]` to
-    `components[i + 1]` - 1. Attributes are None where there are none.
+    `components[i + 1]` - 1. Attributes are None where there are none. `normals` are those of vertices, or, if
+    `normal_triangles` [m, 3] is there, those that it gives the indices of for corners.
     """
 
     grid: np.ndarray
@@ -24,6 +25,7 @@ class Mesh:
     components: list[int]
     patches: list[int]
     normals: np.ndarray | None = None
+    normal_triangles: np.ndarray | None = None
     colors: np.ndarray | None = None
     uvs: np.ndarray | None = None
     uv_triangles: np.ndarray | None = None
@@ -100,21 +102,19 @@ def _numbering(grid: np.ndarray, triangles: np.ndarray, patch_size: int) -> tupl
 
 
 def _loose_uv_triangles(mesh: DracoMesh, vertex: np.ndarray, loose: Sequence[Sequence[int]]) -> np.ndarray:
-    """spec.md 5.3, "Attributes": a corner of a loose triangle takes its vertex's first corner's index, or 0."""
+    """spec.md 5.3, "Texture coordinates": a corner of a loose triangle takes its vertex's first corner's index, or 0."""
     first: dict[int, int] = {}
     for corner, uv in zip(vertex[mesh.triangles].ravel().tolist(), mesh.uv_triangles.ravel().tolist()):
         first.setdefault(corner, uv)
     return np.array([[first.get(corner, 0) for corner in triangle] for triangle in loose], np.int64).reshape(-1, 3)
 
 
-def _vertex_attribute(
-    count: int, width: int, of_entries: np.ndarray | None, vertex: np.ndarray, loose: list, dtype
-) -> np.ndarray | None:
-    """spec.md 5.3, "Attributes": of the last of a vertex's entries, or the loose vertex's own (None: it has none)."""
+def _colors(count: int, of_entries: np.ndarray | None, vertex: np.ndarray, loose: list) -> np.ndarray | None:
+    """spec.md 5.3, "Colours": of the last of a vertex's entries, or the loose vertex's own (None: it has none)."""
     has_loose = any(value is not None for value in loose)
     if of_entries is None and not has_loose:
         return None
-    result = np.zeros((count, width), dtype)
+    result = np.zeros((count, 4), np.int64)
     if of_entries is not None:
         for entry, target in enumerate(vertex):
             result[target] = of_entries[entry]
@@ -122,6 +122,46 @@ def _vertex_attribute(
         if value is not None:
             result[count - len(loose) + i] = value
     return result
+
+
+def _corner_normals(
+    draco: DracoMesh, triangles: np.ndarray, own: dict[int, tuple[float, ...]]
+) -> list[tuple[int, bytes]]:
+    """spec.md 5.3, "Normals": the vertex and the bits of the normal of each corner. `triangles` are all, by the vertices
+    of step 1, `own` the loose vertices' normals."""
+    zero = np.zeros(3, np.float32).tobytes()
+    first = {vertex: np.array(normal, np.float32).tobytes() for vertex, normal in own.items()}
+    corners = triangles[: len(draco.triangles)].ravel().tolist()
+    of_draco = [zero] * len(corners)
+    if draco.normals is not None:
+        of_draco = [normal.tobytes() for normal in draco.normals.reshape(-1, 3)]
+    for vertex, normal in reversed(list(zip(corners, of_draco))):
+        first[vertex] = normal
+    of_loose = [first.get(vertex, zero) for vertex in triangles[len(draco.triangles) :].ravel().tolist()]
+    return list(zip(triangles.ravel().tolist(), of_draco + of_loose))
+
+
+def _normals(
+    draco: DracoMesh, triangles: np.ndarray, count: int, loose: list
+) -> tuple[np.ndarray | None, np.ndarray | None]:
+    """spec.md 5.3, "Normals": those of vertices, by the numbers of step 1, and None; or those of corners and, for each
+    corner, the index of its own. `loose` are the loose vertices' normals (None: they have none)."""
+    own = {count - len(loose) + i: normal for i, normal in enumerate(loose) if normal is not None}
+    if draco.normals is None and not own:
+        return None, None
+    corners = _corner_normals(draco, triangles, own)
+    bits = dict(corners)
+    if all(bits[vertex] == normal for vertex, normal in corners):
+        normals = np.zeros((count, 3), np.float32)
+        for vertex, normal in own.items():
+            normals[vertex] = normal
+        for vertex, normal in bits.items():
+            normals[vertex] = np.frombuffer(normal, np.float32)
+        return normals, None
+    numbers: dict[tuple[int, bytes], int] = {}
+    indices = [numbers.setdefault(corner, len(numbers)) for corner in corners]
+    normals = np.frombuffer(b"".join(normal for _, normal in numbers), np.float32).reshape(-1, 3)
+    return normals, np.array(indices, np.int64).reshape(-1, 3)
 
 
 def build_mesh(
@@ -155,9 +195,10 @@ def build_mesh(
     number = np.empty(count, np.int64)  # the final number of each vertex of step 1
     number[final] = np.arange(count)
     mesh = Mesh(grid[final], number[all_triangles], components, patches, order=side.order)
-    normals = _vertex_attribute(count, 3, draco.normals, vertex, [v.normal for v in loose], np.float32)
-    colors = _vertex_attribute(count, 4, draco.colors, vertex, [v.color for v in loose], np.int64)
-    mesh.normals = None if normals is None else normals[final]
+    mesh.normals, mesh.normal_triangles = _normals(draco, all_triangles, count, [v.normal for v in loose])
+    if mesh.normals is not None and mesh.normal_triangles is None:
+        mesh.normals = mesh.normals[final]
+    colors = _colors(count, draco.colors, vertex, [v.color for v in loose])
     mesh.colors = None if colors is None else colors[final]
     if draco.uvs is not None:
         mesh.uvs = draco.uvs
