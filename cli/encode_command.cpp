@@ -169,30 +169,60 @@ void AddFrameRate(CLI::App& app, EncoderSettings& encoder) {
       ->option_text("RATE");
 }
 
-void AddOptions(CLI::App& app, EncodeOptions& o) {
-  EncoderSettings& encoder = o.encoding.encoder;
+void AddFiles(CLI::App& app, EncodeOptions& o) {
   app.add_option(
          "INPUT", o.inputs,
-         "a mesh and its point cache (mesh.obj clip.pc2, mesh.ply clip.mdd), or meshes one a frame, or a "
+         "a mesh and its point cache (mesh.obj clip.pc2, mesh.ply clip.mdd), or meshes, one for each frame, or a "
          "pattern of them (frame_%04d.obj, frame_####.obj, frame_$F4.obj, or 'frame_*.obj' in quotes), or their "
          "directory; .obj, .ply, .off, .stl, .om")
       ->required()
       ->option_text("...");
   app.add_option("-o,--output", o.output, "the stream to write; - is standard output")->required()->option_text("FILE");
-  AddNumber(app, "--quality", o.quality, 0.0, 100.0, "0 (smallest) to 100 (nearest to the input) [50]");
+  app.add_option(
+         "--gaps", o.gaps,
+         "what becomes of numbers that are missing in a sequence of meshes: error, hold (the frame before stands "
+         "for them) or skip [error]")
+      ->check(CLI::IsMember(std::vector<std::string>{"error", "hold", "skip"}))
+      ->option_text("WHAT");
+  app.add_flag("--skip-damage", o.skip_damage, "read the whole frames of a cache that is cut short");
+  app.add_flag("--keep-order", o.encoding.encoder.keep_order, "put the order of the vertices in the stream");
+  app.add_option("--order-map", o.order_map, "write the order of the vertices to a file, for decode --order-map")
+      ->option_text("FILE");
+  AddFrameRate(app, o.encoding.encoder);
+}
+
+void AddTargets(CLI::App& app, EncodeOptions& o) {
   RateTargets& targets = o.encoding.targets;
+  AddNumber(app, "--quality", o.quality, 0.0, 100.0, "0 (smallest stream) to 100 (nearest to the input) [50]");
   AddNumber(app, "--target-kg", targets.kg, kLeastTarget, kLargestTarget,
-            "search for the smallest stream of at most this KG, percent: the clip is encoded 3 to 24 times");
-  AddNumber(app, "--target-sted", targets.sted, kLeastTarget, kLargestTarget, "likewise of at most this STED");
+            "search for the smallest stream whose KG is at most this, in percent: the clip is encoded 3 to 24 times");
+  AddNumber(app, "--target-sted", targets.sted, kLeastTarget, kLargestTarget,
+            "search for the smallest stream whose STED is at most this, also together with --target-kg");
   AddNumber(app, "--target-bpvf", targets.bpvf, kLeastTarget, kLargestTarget,
-            "search for the best quality in at most so many bits a vertex and frame; with another target, fail where "
-            "that takes more");
-  AddFrameRate(app, encoder);
+            "search for the best quality in at most this many bits per vertex and frame; with another target, fail "
+            "where the smallest stream takes more");
+  AddMaxError(app, o.max_error);
+}
+
+void AddSteps(CLI::App& app, EncoderSettings& encoder) {
   AddNumber(app, "--harmonics", encoder.harmonics, 1u, Limits{}.expert.harmonics,
             "manifold harmonics over all components; time and memory grow with them [from the quality]");
-  AddNumber(
-      app, "--samples-per-harmonic", encoder.samples_per_harmonic, 0u, 64u,
-      "radial functions a harmonic that the basis is computed from; 0 for exact harmonics, which start slowly [2]");
+  AddNumber(app, "--samples-per-harmonic", encoder.samples_per_harmonic, 0u, 64u,
+            "radial functions for each harmonic, from which the basis is computed; 0 for exact harmonics, which start "
+            "slowly [2]");
+  AddNumber(app, "--motion-step", encoder.motion_step, kLeastStep, kLargestStep,
+            "quantizer step of rotation and stretch, in radians and strain [from the quality]");
+  AddNumber(app, "--displacement-step", encoder.displacement_step, kLeastStep, kLargestStep,
+            "quantizer step of displacement, as a fraction of the first frame's RMS radius [from the quality]");
+  AddNumber(app, "--detail-step", encoder.detail_step, 0.0, kLargestStep,
+            "quantizer step of local detail, as a fraction of the RMS radius; 0 for none [from the quality]");
+  AddNumber(app, "--position-bits", encoder.position_bits, 1.0, 24.0,
+            "log2 of the first frame's extent in steps, at edges of median length; may be a fraction [from the "
+            "quality]");
+}
+
+void AddStructure(CLI::App& app, EncodeOptions& o) {
+  EncoderSettings& encoder = o.encoding.encoder;
   AddNumber(app, "--group", encoder.group, 1u, Limits{}.expert.frames_per_group,
             "frames between points of random access [128]");
   CLI::Option* pyramid = AddNumber(app, "--pyramid", encoder.pyramid, 1u, Limits{}.expert.frames_per_group,
@@ -203,32 +233,17 @@ void AddOptions(CLI::App& app, EncodeOptions& o) {
                  "what motion is measured against: key, the first frame, or previous, the frame before [key]")
       ->check(CLI::IsMember(std::vector<std::string>{"key", "previous"}))
       ->option_text("SHAPE");
-  AddNumber(app, "--motion-step", encoder.motion_step, kLeastStep, kLargestStep,
-            "quantizer step of rotation and stretch, radians and strain [from the quality]");
-  AddNumber(app, "--displacement-step", encoder.displacement_step, kLeastStep, kLargestStep,
-            "quantizer step of displacement, as a fraction of the first frame's RMS radius [from the quality]");
-  AddNumber(app, "--detail-step", encoder.detail_step, 0.0, kLargestStep,
-            "quantizer step of local detail, as a fraction of the RMS radius; 0 for none [from the quality]");
-  AddMaxError(app, o.max_error);
-  AddNumber(
-      app, "--position-bits", encoder.position_bits, 1.0, 24.0,
-      "log2 of the first frame's extent in steps, at edges of median length; may be a fraction [from the quality]");
-  app.add_flag("!--no-index", encoder.index, "leave out where groups begin, which a stream of several ends with");
+  app.add_flag("!--no-index", encoder.index,
+               "leave out the index of groups, with which a stream of several groups ends; players seek by it");
   AddNumber(app, "--repeat-start", encoder.repeat_start, 0u, 0xffffffffu,
-            "header and first frame again before every so many groups, for those who join in the middle [never]");
-  app.add_flag("--keep-order", encoder.keep_order, "put the order of the vertices in the stream");
-  app.add_option("--order-map", o.order_map, "write the order of the vertices to a file, for decode --order-map")
-      ->option_text("FILE");
-  app.add_flag("!--unchecked", o.encoding.measure, "neither decode nor measure what is written: in half the time");
-  app.add_option(
-         "--gaps", o.gaps,
-         "what becomes of numbers that are missing in a sequence of meshes: error, hold (the frame before stands "
-         "for them) or skip [error]")
-      ->check(CLI::IsMember(std::vector<std::string>{"error", "hold", "skip"}))
-      ->option_text("WHAT");
-  app.add_flag("--skip-damage", o.skip_damage, "read the whole frames of a cache that is cut short");
+            "write header and first frame again before every N groups, for those who join in the middle [never]");
+}
+
+void AddReport(CLI::App& app, EncodeOptions& o) {
+  app.add_flag("!--unchecked", o.encoding.measure,
+               "neither decode nor measure what is written; takes half the time, and tells nothing of errors");
   AddStrict(app, o.strict);
-  app.add_flag("--json", o.json, "report sizes in bytes, distortion and settings as one JSON object");
+  app.add_flag("--json", o.json, "report sizes in bytes, distortion, settings and warnings as one JSON object");
 }
 
 }  // namespace
@@ -237,7 +252,11 @@ Command AddEncodeCommand(CLI::App& app) {
   auto options = std::make_shared<EncodeOptions>();
   CLI::App* command = app.add_subcommand(
       "encode", "Encode a clip. The stream is decoded as it is written, and measured against the input.");
-  AddOptions(*command, *options);
+  AddFiles(*command, *options);
+  AddTargets(*command, *options);
+  AddSteps(*command, options->encoding.encoder);
+  AddStructure(*command, *options);
+  AddReport(*command, *options);
   command->footer(
       "The report goes to standard output, or to standard error if the stream goes there. Without --keep-order or\n"
       "--order-map the decoded clip has its vertices in another order.\n\n"
