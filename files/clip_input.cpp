@@ -171,11 +171,11 @@ void ClipInput::TellChanges(const MeshFile& file, const std::string& path) {
 
 void ClipInput::TellCoarse(const Positions& frame, const std::string& where) {
   if (told_coarse_) return;
-  if (const double step = CoarseStep(frame); step > 0) {
+  if (const double step = CoarseStep(frame, diagonal_); step > 0) {
     char text[32];
     std::snprintf(text, sizeof text, "%g", step);
-    Tell(told_coarse_, where + ": so far from the origin float32 has steps of " + text +
-                           "; move the mesh to the origin before the export");
+    Tell(told_coarse_, where + ": float32 has steps of " + text +
+                           " at its distance from the origin; move the mesh to the origin before the export");
   }
 }
 
@@ -222,6 +222,7 @@ Status ClipInput::Next(Positions& frame, bool& end) {
   } else if (cache_) {
     SAC_RETURN_IF_ERROR(cache_->Read(next_, frame));
     SAC_RETURN_IF_ERROR(CheckCacheFrame(frame, cache_->path(), next_));
+    TellCoarse(frame, cache_->path() + ": frame " + std::to_string(next_));
     Subtract(offset_, frame);
   } else {
     SAC_RETURN_IF_ERROR(NextOfSequence(frame));

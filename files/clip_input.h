@@ -86,6 +86,7 @@ class ClipInput : public ClipReader {
   std::unique_ptr<CacheReader> cache_;
   Warnings warnings_;
   bool told_colors_ = false, told_uvs_ = false, told_normals_ = false, told_coarse_ = false;
+  double diagonal_ = 0;  // of the largest frame so far
   std::uint32_t next_ = 0;
 };
 

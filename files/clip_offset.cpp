@@ -67,9 +67,9 @@ void Subtract(const Vec3d& offset, Positions& positions) {
   }
 }
 
-double CoarseStep(const Positions& positions) {
+double CoarseStep(const Positions& positions, double& diagonal) {
   double largest = 0;
-  const double diagonal = BoxOf(positions, largest).diagonal();
+  diagonal = std::max(diagonal, BoxOf(positions, largest).diagonal());
   const auto top = static_cast<float>(largest);
   const double step = static_cast<double>(std::nextafter(top, std::numeric_limits<float>::infinity())) - top;
   return diagonal > 0 && step > diagonal * 0x1p-16 ? step : 0;

@@ -23,8 +23,9 @@ Positions Relative(const MeshFile& file, const Vec3d& offset);
 // Makes positions relative to `offset`.
 void Subtract(const Vec3d& offset, Positions& positions);
 
-// The distance of neighbouring float32 numbers at the largest of the coordinates, if that is so large against the box's
-// diagonal (above 2^-16 of it) that a shape kept in float32 is likely to have lost some of itself; else 0.
-double CoarseStep(const Positions& positions);
+// The distance of neighbouring float32 numbers at the largest of the coordinates, if it is so large against `diagonal`
+// (above 2^-16 of it) that a shape kept in float32 is likely to have lost some of itself; else 0. `diagonal` is that of
+// the largest box so far, and grows to that of the positions' box: a frame may be shrunk to a point.
+double CoarseStep(const Positions& positions, double& diagonal);
 
 }  // namespace sac

@@ -49,8 +49,8 @@ void CompleteNormals(PolygonMesh& parsed) {
     }
   }
   if (completed > 0) {
-    parsed.warnings.push_back(std::to_string(completed) +
-                              " faces have no normals where others have; they get those of their planes");
+    parsed.warnings.push_back("normals are missing on " + std::to_string(completed) + " of " +
+                              std::to_string(parsed.faces.size()) + " faces; those get the normals of their planes");
   }
 }
 
@@ -113,8 +113,8 @@ void FinishUvs(PolygonMesh& parsed, const std::vector<Triangle>& corners, Mesh& 
   }
   mesh.uvs = table.Take();
   if (lacking > 0) {
-    parsed.warnings.push_back(std::to_string(lacking) +
-                              " corners of triangles have no texture coordinates where others have; they get 0 0");
+    parsed.warnings.push_back("texture coordinates are missing on " + std::to_string(lacking) + " of " +
+                              std::to_string(3 * corners.size()) + " corners of triangles; those get 0 0");
   }
 }
 

@@ -212,8 +212,8 @@ Status ObjParser::Finish() {
     mesh_.corner_normals.clear();
   }
   if (colored_ > 0 && colored_ < mesh_.positions.size()) {
-    mesh_.warnings.push_back(std::to_string(mesh_.positions.size() - colored_) +
-                             " vertices have no color where others have; they become white");
+    mesh_.warnings.push_back("colors are missing on " + std::to_string(mesh_.positions.size() - colored_) + " of " +
+                             std::to_string(mesh_.positions.size()) + " vertices; those become white");
   }
   mesh_.colors = RoundColors(colors_, mesh_.losses);
   mesh_.wide = true;

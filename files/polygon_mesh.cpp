@@ -124,7 +124,7 @@ Status FinishMesh(PolygonMesh& parsed, const ReadSettings& settings, MeshFile& f
   FinishUvs(parsed, cut.corners, mesh);
   FinishNormals(parsed, cut.corners, mesh);
   TellLosses(parsed, cut, file.warnings);
-  if (settings.weld) TellLooseParts(parsed.positions, mesh.triangles, file.warnings);
+  if (settings.weld && settings.first == nullptr) TellLooseParts(parsed.positions, mesh.triangles, file.warnings);
   file.warnings.insert(file.warnings.end(), parsed.warnings.begin(), parsed.warnings.end());
 
   mesh.positions.reserve(parsed.positions.size());

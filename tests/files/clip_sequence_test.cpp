@@ -67,11 +67,24 @@ TEST_F(ClipSequenceTest, AnOffsetMayBeGiven) {
 TEST_F(ClipSequenceTest, CoarseFloatsAreTold) {
   const Positions far = {{5600000, 0, 0}, {5600001, 2, 0}, {5600000, 0, 1}};
   const auto cache = Open({WriteObj("a.obj", 0), WriteCache("a.pc2", {far})});
-  EXPECT_EQ(Told(*cache), (Warnings{"a.pc2: so far from the origin float32 has steps of 0.5; move the mesh to the "
-                                    "origin before the export"}));
+  EXPECT_EQ(Told(*cache), (Warnings{"a.pc2: float32 has steps of 0.5 at its distance from the origin; move the mesh to "
+                                    "the origin before the export"}));
   const auto stl = Open({directory_.Write("a.stl", Stl({far})), directory_.Write("b.stl", Stl({far}))});
-  EXPECT_EQ(Told(*stl), (Warnings{"a.stl: so far from the origin float32 has steps of 0.5; move the mesh to the "
-                                  "origin before the export"}));
+  EXPECT_EQ(Told(*stl), (Warnings{"a.stl: float32 has steps of 0.5 at its distance from the origin; move the mesh to "
+                                  "the origin before the export"}));
+}
+
+TEST_F(ClipSequenceTest, CoarseFloatsOfLaterFramesAreTold) {
+  const Positions here = {{0, 0, 0}, {1, 2, 0}, {0, 0, 1}};
+  Positions far = here, small = here;
+  for (Vec3f& p : far) p[0] += 5600000;
+  // Shrunk to a thousandth at ten times its size, nothing is lost that was to be seen.
+  for (Vec3f& p : small) p = {20 + p[0] / 1000, p[1] / 1000, p[2] / 1000};
+  const auto cache = Open({WriteObj("a.obj", 0), WriteCache("a.pc2", {here, small, far, far})});
+  EXPECT_EQ(Frames(*cache).size(), 4U);
+  EXPECT_EQ(Told(*cache),
+            (Warnings{"a.pc2: frame 2: float32 has steps of 0.5 at its distance from the origin; move the "
+                      "mesh to the origin before the export"}));
 }
 
 TEST_F(ClipSequenceTest, ChangesOfAttributesAreToldOnce) {

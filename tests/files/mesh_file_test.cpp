@@ -232,6 +232,37 @@ TEST_F(MeshFileTest, OffCommentsAndColors) {
   EXPECT_EQ(mesh.triangles.size(), 1U);
 }
 
+TEST_F(MeshFileTest, OffPrefixesAndFaceColors) {
+  // Position, normal, colour of three, texture coordinates; a row over two lines; faces with colours.
+  const MeshFile file = ReadFile("a.off",
+                                 "STCNOFF 3 2 # no edges\n0 0 0 0 0 1 0.2 0 1 0.5 0.25\n1 0 0\n0 0 1 0 0 1 0 1\n"
+                                 "0 1.0000000001 0 0 0 1 0 0 1 0.5 0.25\n3 0 1 2 255 0 0\n3 2 1 0\n");
+  EXPECT_EQ(file.mesh.normals, (std::vector<Vec3f>(3, {0, 0, 1})));
+  EXPECT_EQ(file.mesh.colors[0], (std::array<std::uint8_t, 4>{51, 0, 255, 255}));
+  EXPECT_EQ(file.mesh.uvs, (std::vector<std::array<float, 2>>{{0.5F, 0.25F}, {0, 1}}));
+  EXPECT_EQ(file.mesh.uv_triangles, (std::vector<Triangle>{{0, 1, 0}, {0, 1, 0}}));
+  EXPECT_EQ(file.exact[2][1], 1.0000000001);
+  EXPECT_EQ(file.warnings, (Warnings{"a.off: colors of faces (1) are not kept"}));
+  const MeshFile more = ReadFile("b.off", "OFF\n1 0 0\n0 0 0 7 7\n");
+  EXPECT_EQ(more.warnings.at(0), "b.off: vertices with further numbers (1) are not kept");
+  EXPECT_EQ(Error("c.off", "STOFF 1 0 0\n0 0 0\n"),
+            "c.off: line 2: vertex 0: a vertex without its texture coordinates");
+  EXPECT_EQ(ReadFile("d.off", "OFF 2 0 0\n0 0 0\n0 nan 0\n").not_finite, "line 3, vertex 1: nan");
+}
+
+TEST_F(MeshFileTest, StlInDoubleAndWhatItLoses) {
+  const std::string facet =
+      "facet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 5600000.0001 0 0\nvertex 0 1 0\n"
+      "endloop\nendfacet\n";
+  const MeshFile ascii = ReadFile("a.stl", "solid a\n" + facet + "endsolid a\nsolid b\n" + facet + "endsolid b\n");
+  EXPECT_EQ(ascii.exact.at(1)[0], 5600000.0001);
+  EXPECT_EQ(ascii.mesh.triangles, (std::vector<Triangle>(2, {0, 1, 2})));
+  EXPECT_EQ(ascii.warnings, (Warnings{"a.stl: 2 objects become one mesh"}));
+  const std::string binary = std::string(80, ' ') + Little32(1) + std::string(48, '\0') + "\x1F\x80";
+  EXPECT_EQ(ReadFile("b.stl", binary).warnings,
+            (Warnings{"b.stl: attribute bytes or colors of triangles (1) are not kept"}));
+}
+
 TEST_F(MeshFileTest, MissingEmptyDirectoryUnknown) {
   EXPECT_EQ(Error("a.obj", ""), "a.obj: the file is empty");
   EXPECT_EQ(Error("a.txt", "v 0 0 0").find("a.txt: not a mesh file by its name"), 0U);

@@ -60,7 +60,7 @@ TEST_F(ObjReaderTest, FacesWithoutNormalsGetTheirPlanes) {
     EXPECT_EQ(file.mesh.normals[file.mesh.normal_triangles[1][k]], (Vec3f{0, 0, 1}));
   }
   EXPECT_EQ(file.warnings,
-            (Warnings{"a.obj: 1 faces have no normals where others have; they get those of their planes"}));
+            (Warnings{"a.obj: normals are missing on 1 of 2 faces; those get the normals of their planes"}));
 }
 
 TEST_F(ObjReaderTest, WhatIsNotKeptIsTold) {
@@ -75,7 +75,7 @@ TEST_F(ObjReaderTest, WhatIsNotKeptIsTold) {
                 "coordinates (1), groups (2), materials (1), smoothing groups (1), lines (1), points (2), "
                 "free-form statements (2), statements (hello), weights of vertices (1), normals that no face uses "
                 "(1) are not kept",
-                "a.obj: 12 corners of triangles have no texture coordinates where others have; they get 0 0"}));
+                "a.obj: texture coordinates are missing on 12 of 18 corners of triangles; those get 0 0"}));
   EXPECT_EQ(ReadFile("a.obj", "v 0 0 0\nv 1 1 0\nv 1 0 0\nv 0 2 0\nf 1 2 3 4\n").warnings,
             (Warnings{"a.obj: 1 quad is triangulated",
                       "a.obj: 1 polygon with edges that cross or touch: triangles of it overlap; triangulate it before "
@@ -90,7 +90,7 @@ TEST_F(ObjReaderTest, Colors) {
   EXPECT_EQ(file.mesh.colors,
             (std::vector<std::array<std::uint8_t, 4>>{{255, 128, 0, 255}, {255, 255, 255, 255}, {51, 102, 153, 255}}));
   EXPECT_EQ(file.warnings, (Warnings{"a.obj: colors finer than 8 bits (1) are not kept",
-                                     "a.obj: 1 vertices have no color where others have; they become white"}));
+                                     "a.obj: colors are missing on 1 of 3 vertices; those become white"}));
   const MeshFile bytes = ReadFile("a.obj", "v 0 0 0 255 0 7\nv 1 0 0 1 2 3\nv 0 1 0 9 9 9\nf 1 2 3\n");
   EXPECT_EQ(bytes.mesh.colors[1], (std::array<std::uint8_t, 4>{1, 2, 3, 255}));
   EXPECT_EQ(bytes.warnings, Warnings{});
