@@ -33,8 +33,9 @@ struct Mesh {
   std::vector<std::array<float, 2>> uvs;
   std::vector<Triangle> uv_triangles;
 
-  // Per vertex, or, where corners of a vertex have normals of their own (hard edges), per corner: normal_triangles[j][k]
-  // indexes normals for corner k of triangle j, and is empty otherwise. Both are empty when there are none.
+  // Per vertex, or, where corners of a vertex have normals of their own (hard edges), per corner:
+  // normal_triangles[j][k] indexes normals for corner k of triangle j, and is empty otherwise. Both are empty when
+  // there are none.
   std::vector<Vec3f> normals;
   std::vector<Triangle> normal_triangles;
 

@@ -125,8 +125,9 @@ TEST_F(UsageTest, SweepSaysThatItsProgramIsMissing) {
   std::filesystem::copy_file(SAC_EXECUTABLE, Path("alone/bin/sac"));
   const Outcome outcome = Shell("alone/bin/sac sweep --help");
   EXPECT_EQ(outcome.code, 1);
-  EXPECT_EQ(outcome.err,
-            "sac: sweep: the program sac-sweep is not installed beside sac; a build with -DSAC_BUILD_SWEEP=ON has it\n");
+  EXPECT_EQ(
+      outcome.err,
+      "sac: sweep: the program sac-sweep is not installed beside sac; a build with -DSAC_BUILD_SWEEP=ON has it\n");
 }
 
 TEST_F(UsageTest, ASignalRemovesTemporaryFiles) {
