@@ -139,8 +139,8 @@ Status EncodeFrames(const SpectralBasis& basis, const Settings& settings, const 
                     StepClock& clock, Code&& code) {
   PositionMatrix decoded = frames[0];
   for (std::size_t f = 1; f < frames.size(); ++f) {
-    TriangleFields fields(basis.triangles());  // new for each frame, since rotations from frame to frame are below pi
-                                               // and need no unwrapping
+    // New for each frame, since rotations from frame to frame are below pi and need no unwrapping.
+    TriangleFields fields(basis.triangles());
     MatrixXd measured = fields.Measure(decoded, frames[f]);
     for (Eigen::Index j = 0; !settings.polar && j < measured.rows(); ++j) {
       double channels[kChannels];
