@@ -241,6 +241,8 @@ Command AddDecodeCommand(CLI::App& app) {
       "The vertices come in the order of the encoder's input if the stream keeps it or a map gives it. An MDD has\n"
       "times; where the stream has no frame rate they are those of 24 frames a second. Files get their names when all\n"
       "of them are complete. With --frames the stream is read up to the last frame wanted.\n\n"
+      "Meshes have the normals of their frames, with the hard edges of the first: .obj alone can hold several at a\n"
+      "vertex. An offset of the stream is added to the positions, in double precision; .pc2 and .mdd round the sum.\n\n"
       "Examples:\n"
       "  sac decode walk.sac -o walk.pc2\n"
       "  sac decode clip.sac -o frame_%04d.ply --frames 100:200\n"

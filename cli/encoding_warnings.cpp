@@ -72,6 +72,9 @@ Warnings EncodingWarnings(const std::string& name, const ClipEncoding& encoding,
   if (encoded.lost_texture_coordinates) {
     warnings.push_back(name + ": its texture coordinates cannot be coded, the stream has none");
   }
+  if (encoded.lost_normals) {
+    warnings.push_back(name + ": its hard edges cannot be coded, the stream has no normals");
+  }
   if (!encoding.measure && !encoding.targets.any()) return warnings;
   TellSeams(encoded, diagonal, name, warnings);
   TellParts(encoded, name, warnings);

@@ -25,7 +25,11 @@ Status ExportBytes(const io::BaseWriter& writer, const Mesh& mesh, io::Options o
   }
   MeshExporter exporter(mesh);
   if (!mesh.normals.empty() && !exporter.has_vertex_normals()) {
-    warnings.push_back("corners of a vertex have normals of their own, which the format cannot hold; written without");
+    warnings.push_back(
+        "corners of a vertex have normals of their own, which the format cannot hold; written without. OBJ holds them");
+  }
+  if (!mesh.uvs.empty() && !exporter.has_vertex_texcoords()) {
+    warnings.push_back("texture coordinates have seams, which the format cannot hold; written without. OBJ holds them");
   }
   if (exporter.has_vertex_normals()) options += io::Options::VertexNormal;
   if (exporter.has_vertex_texcoords()) options += io::Options::VertexTexCoord;

@@ -189,7 +189,7 @@ TEST_F(DecodeCubeTest, OneNormalAVertexIsNotInventedForHardEdges) {
     EXPECT_EQ(outcome.code, 0);
     EXPECT_EQ(outcome.err, "sac: warning: o_0" + name.substr(4) +
                                ": corners of a vertex have normals of their own, which the format cannot hold; written "
-                               "without\n");
+                               "without. OBJ holds them\n");
     EXPECT_TRUE(Load("o_1" + name.substr(4)).normals.empty());
   }
 }

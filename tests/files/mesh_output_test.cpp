@@ -33,7 +33,7 @@ TEST_F(MeshOutputTest, NormalsOfCornersStandInObjAlone) {
     const Mesh back = Read(name, format(name, warning));
     EXPECT_EQ(warning, name +
                            ": corners of a vertex have normals of their own, which the format cannot hold; written "
-                           "without");
+                           "without. OBJ holds them");
     EXPECT_TRUE(back.normals.empty());
     EXPECT_EQ(back.triangles, cube.triangles);
   }
