@@ -80,7 +80,8 @@ class Laboratory:
     def synth(self, kind, vertices, frames):
         name = f"{kind}_{vertices}_{frames}"
         clip = Clip(kind, *(os.path.join(self.work, name + e) for e in (".obj", ".pc2")))
-        run(self.sac_program, "synth", kind, "-o", clip.cache, "--vertices", str(vertices), "--frames", str(frames))
+        size = ("--vertices", str(vertices), "--frames", str(frames))
+        run(self.sac_program, "synth", kind, "--force", "-o", clip.cache, *size)
         return clip
 
     def peer(self, name, clip, setting, by_frame=False):
@@ -154,7 +155,7 @@ class Laboratory:
         said = run(
             self.sac_program, "encode", clip.mesh, clip.cache, "-o", stream, "--order-map", order, "--json", *options
         )
-        run(self.sac_program, "decode", stream, "-o", decoded, "--order-map", order)
+        run(self.sac_program, "decode", "--force", stream, "-o", decoded, "--order-map", order)
         return {**self._compare(clip, stream, decoded), "said": json.loads(said)}
 
 

@@ -55,6 +55,12 @@ TEST_F(MeshOutputTest, UvsAndNormalsOfCornersTogether) {
   Warnings warnings;
   ASSERT_TRUE(FormatMesh("a.obj", mesh, {}, bytes, warnings).ok());
   EXPECT_NE(bytes.find("\nf 1/1/1 2/2/1 4/3/1\n"), std::string::npos);
+  EXPECT_TRUE(warnings.empty());
+  // A vertex has another place in the texture at each corner.
+  ASSERT_TRUE(FormatMesh("a.off", mesh, {}, bytes, warnings).ok());
+  ASSERT_EQ(warnings.size(), 2U);
+  EXPECT_EQ(warnings[1],
+            "a.off: texture coordinates have seams, which the format cannot hold; written without. OBJ holds them");
 }
 
 TEST_F(MeshOutputTest, AnOffsetIsAddedInDoublePrecision) {
