@@ -33,7 +33,7 @@ struct SweepOptions {
   std::string peers = "none", peer_directory;
   std::string qualities = "0,10,25,40,50,60,70,80,90,100", max_errors;
   std::vector<std::string> also;
-  bool keep = false;
+  bool keep = false, force = false;
   unsigned jobs = std::max(1u, std::thread::hardware_concurrency());
 };
 
@@ -79,13 +79,23 @@ class ReportDirectory {
  public:
   ~ReportDirectory() {
     std::error_code ignored;
-    if (fd_ >= 0) fs::remove_all(work(), ignored);
-    if (fd_ >= 0) close(fd_);
+    if (fd_ < 0) return;
+    fs::remove_all(work(), ignored);
+    fs::remove(results(), ignored);  // when nothing was measured
+    if (created_) fs::remove(path_, ignored);
+    close(fd_);
   }
 
-  Status Open(const std::string& path) {
+  // Reports of which there are no results are somebody else's: they are replaced with `force` alone.
+  Status Open(const std::string& path, bool force) {
     std::error_code error;
-    fs::create_directories(path, error);
+    for (const char* name : {"sweep.html", "sweep.csv", "sweep.json"}) {
+      if (force || fs::exists(path + "/results", error) || !fs::exists(path + "/" + name, error)) continue;
+      return Status::InvalidArgument(path + "/" + name +
+                                     ": is there already, without results of a sweep beside it; give another directory "
+                                     "for the output, or --force");
+    }
+    created_ = fs::create_directories(path, error);
     if (error) return Status::IoError(path + ": " + error.message());
     path_ = fs::absolute(path).lexically_normal().string();
     const int fd = open(path_.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -110,11 +120,12 @@ class ReportDirectory {
  private:
   std::string path_;
   int fd_ = -1;
+  bool created_ = false;
 };
 
 Status RunAndReport(const SweepOptions& options) {
   ReportDirectory directory;
-  SAC_RETURN_IF_ERROR(directory.Open(options.output));
+  SAC_RETURN_IF_ERROR(directory.Open(options.output, options.force));
   Sweep sweep;
   sweep.jobs = options.jobs;
   for (const std::vector<std::string>& inputs : ClipsOf(options.inputs)) {
@@ -168,6 +179,7 @@ std::vector<Command> AddSweep(CLI::App& app) {
                    "measures only what is not there yet")
       ->required()
       ->option_text("DIRECTORY");
+  command->add_flag("--force", options->force, "replace reports in the directory that no sweep has left there");
   command
       ->add_option("--peers", options->peers,
                    "other codecs, with commas between: all, none or names of the footer [none]")

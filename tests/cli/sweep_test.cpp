@@ -55,6 +55,28 @@ std::vector<std::string> Lines(const std::string& text) {
 
 TEST_F(SweepTest, Help) { EXPECT_NE(Good({"sweep", "--help"}).find("  sac sweep"), std::string::npos); }
 
+TEST_F(SweepTest, ReportsOfOthersStay) {
+  Shell("mkdir report; echo mine > report/sweep.html");
+  const std::vector<std::string> sweep{"sweep", "in.obj", "in.pc2", "-o", "report", "--qualities", "20"};
+  const Outcome refused = Sac(sweep);
+  EXPECT_EQ(refused.code, 1);
+  EXPECT_EQ(
+      refused.err,
+      "sac: report/sweep.html: is there already, without results of a sweep beside it; give another directory for "
+      "the output, or --force\n");
+  EXPECT_EQ(Read("report/sweep.html"), "mine\n");
+  std::vector<std::string> forced = sweep;
+  forced.push_back("--force");
+  Good(forced);
+  EXPECT_NE(Read("report/sweep.html"), "mine\n");
+  Good(sweep);  // its own
+}
+
+TEST_F(SweepTest, NothingStaysWhereNothingWasMeasured) {
+  EXPECT_EQ(Sac({"sweep", "absent.obj", "-o", "fresh"}).code, 1);
+  EXPECT_EQ(Shell("test -e fresh").code, 1);
+}
+
 TEST_F(SweepTest, SaysWhatEncodeAndCompareSay) {
   Sweep({"--max-errors", "1e-3", "--also", "--reference previous"});
   const nlohmann::json report = Report();
