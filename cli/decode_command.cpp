@@ -185,6 +185,23 @@ Status Decoding::Commit() {
   return output_->Commit();
 }
 
+// The vertical axis and the unit of what is written.
+void AddAxes(CLI::App& app, AxisConversion& axes) {
+  const auto up = [&axes](const CLI::results_t& words) {
+    if (axes.ParseUp(words.front())) return true;
+    throw CLI::ValidationError("--up", "'" + words.front() + "' is neither y:z nor z:y");
+  };
+  app.add_option("--up", up, "turn what has y up so that z is up, y:z, or the other way round, z:y")
+      ->option_text("FROM:TO");
+  const auto units = [&axes](const CLI::results_t& words) {
+    if (axes.ParseUnits(words.front())) return true;
+    throw CLI::ValidationError("--units",
+                               "'" + words.front() + "' is no pair of mm, cm, m, km, in, ft and yd such as cm:m");
+  };
+  app.add_option("--units", units, "scale from one unit of length to another: mm, cm, m, km, in, ft, yd")
+      ->option_text("FROM:TO");
+}
+
 }  // namespace
 
 Command AddDecodeCommand(CLI::App& app) {
@@ -216,25 +233,7 @@ Command AddDecodeCommand(CLI::App& app) {
                     "go on after damage with the next group that is sound, and tell which frames are lost");
   AddNumber(*command, "--first-number", options->first_number, 0u, 0xffffffffu,
             "the number of frame 0 in the names of a sequence [0]");
-  command
-      ->add_option(
-          "--up",
-          [options](const CLI::results_t& words) {
-            if (options->axes.ParseUp(words.front())) return true;
-            throw CLI::ValidationError("--up", "'" + words.front() + "' is neither y:z nor z:y");
-          },
-          "turn what has y up so that z is up, y:z, or the other way round, z:y")
-      ->option_text("FROM:TO");
-  command
-      ->add_option(
-          "--units",
-          [options](const CLI::results_t& words) {
-            if (options->axes.ParseUnits(words.front())) return true;
-            throw CLI::ValidationError(
-                "--units", "'" + words.front() + "' is no pair of mm, cm, m, km, in, ft and yd such as cm:m");
-          },
-          "scale from one unit of length to another: mm, cm, m, km, in, ft, yd")
-      ->option_text("FROM:TO");
+  AddAxes(*command, options->axes);
   command->add_flag("--force", options->force, "replace a mesh that is there beside the cache to write");
   AddStrict(*command, options->strict);
   command->footer(
