@@ -57,7 +57,7 @@ void TellQuality(const EncodedClip& encoded, const std::string& name, Warnings& 
   const auto tell = [&](const char* figure, const char* unit, const char* option, double value, double usual) {
     if (value <= kOverTypical * usual) return;
     warnings.push_back(name + ": " + figure + " is " + Number(value) + unit + ", where quality " + Number(quality) +
-                       " usually gives " + Number(usual) + unit + ". " + option + " " + Number(usual) +
+                       " usually gives " + Number(usual, 2) + unit + ". " + option + " " + Number(usual, 2) +
                        " would hold it");
   };
   tell("KG", " %", "--target-kg", encoded.distortion.kg, typical.kg);

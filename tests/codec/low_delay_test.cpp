@@ -203,9 +203,19 @@ TEST(LowDelay, AFrameThatCannotBeCodedEndsTheStream) {
   ASSERT_TRUE(encoder->Send(clip.frames[0]).ok());
   std::mt19937 random(1);
   for (Vec3f& p : clip.frames[1]) p[0] += static_cast<float>(1e5 * Signed(random));
-  EXPECT_EQ(encoder->Send(clip.frames[1]).code(), StatusCode::kInvalidArgument);
+  const Status failed = encoder->Send(clip.frames[1]);
+  EXPECT_EQ(failed.code(), StatusCode::kInvalidArgument);
+  ASSERT_TRUE(encoder->fault() && encoder->fault()->vertex);
+  EXPECT_EQ(encoder->fault()->frame, 1u);
+  const std::string where = "frame 1, vertex " + std::to_string(*encoder->fault()->vertex) + ": ";
+  EXPECT_EQ(failed.message().rfind(where, 0), 0u) << failed.message();
   EXPECT_EQ(encoder->Send(clip.frames[2]).code(), StatusCode::kInvalidArgument);
-  EXPECT_EQ(encoder->Finish().code(), StatusCode::kInvalidArgument);
+  EXPECT_EQ(encoder->frames(), 1u);
+  // What was coded before is a stream.
+  ASSERT_TRUE(encoder->Finish().ok());
+  const Decoded decoded = Decode(encoder->TakeBytes());
+  EXPECT_TRUE(decoded.status.ok()) << decoded.status.message();
+  EXPECT_EQ(decoded.frames.size(), 1u);
 }
 
 }  // namespace

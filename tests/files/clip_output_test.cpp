@@ -147,9 +147,9 @@ TEST_F(ClipOutputTest, CachesRoundTheSumWithAnOffset) {
     EXPECT_NE(directory_.Read("a.obj").find("v 5600000.200000003 0 0 "), std::string::npos);
   }
   settings.offset = {0, 1e39, 0};
-  ASSERT_TRUE(ClipOutput::Open(directory_.Path("a.mdd"), mesh_, settings, output_).ok());
+  ASSERT_TRUE(ClipOutput::Open(directory_.Path("b.mdd"), mesh_, settings, output_).ok());
   EXPECT_EQ(output_->Write(3, Frame(1)).message(),
-            directory_.Path("a.mdd") +
+            directory_.Path("b.mdd") +
                 ": frame 3: vertex 0 is beyond the range of the format's 32-bit floats; meshes "
                 "(.obj) hold it");
 }

@@ -142,7 +142,7 @@ std::vector<Positions> Hinge(float x) {
 
 TEST_F(ClipSequenceTest, StlIsWeldedOverTheClip) {
   const auto path = [&](const std::string& name, float x) { return directory_.Write(name, Stl(Hinge(x))); };
-  const std::string apart = path("f2.stl", 1);
+  const std::string apart = path("apart.stl", 1);
   // In all frames together: four vertices. Where one frame parts them, whichever it is: six.
   const auto hinge = Open({path("f0.stl", 0), path("f1.stl", 0)});
   EXPECT_EQ(hinge->mesh().triangles, (std::vector<Triangle>{{0, 1, 2}, {2, 1, 3}}));
