@@ -3,7 +3,7 @@
 
 #include <cstdio>
 
-#include "rate_control/place.h"
+#include "rate_control/search_point.h"
 
 namespace sac {
 namespace {
@@ -53,7 +53,7 @@ bool HasStepsOfQuality(const ClipEncoding& encoding) {
 
 void TellQuality(const EncodedClip& encoded, const std::string& name, Warnings& warnings) {
   const double quality = encoded.settings.quality;
-  const Typical typical = TypicalOf(quality);
+  const TypicalFigures typical = TypicalOf(quality);
   const auto tell = [&](const char* figure, const char* unit, const char* option, double value, double usual) {
     if (value <= kOverTypical * usual) return;
     warnings.push_back(name + ": " + figure + " is " + Number(value) + unit + ", where quality " + Number(quality) +

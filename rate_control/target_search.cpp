@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "codec/encode/quality.h"
-#include "rate_control/place.h"
 #include "rate_control/proposal.h"
 #include "rate_control/rate_model.h"
+#include "rate_control/search_point.h"
 
 namespace sac {
 namespace {
@@ -23,9 +23,9 @@ constexpr double kBand = 0.0304;  // a figure of at least 97 % of its target is 
 constexpr double kAim = -0.004, kFarthestAim = -0.024;
 constexpr double kGain = 0.0025;   // a predicted gain in cost below this times the number of trials ends the search
 constexpr double kFar = 0.15;      // farther from the targets than this, only the quality changes
-constexpr double kBehind = 0.1;    // a branch whose predicted cost is higher than the other's by this is given up
-constexpr double kHopeless = 0.3;  // a predicted excess above this at the finest place ends a branch
-constexpr int kMostTrials = 12;    // trials in a branch
+constexpr double kBehind = 0.1;    // a mode whose predicted cost is higher than the other's by this is given up
+constexpr double kHopeless = 0.3;  // a predicted excess above this at the finest point ends a mode
+constexpr int kMostTrials = 12;    // trials in a mode
 // Detail is tried after the smooth planes when their best quality is above kSmoothWins. After detail, the smooth planes
 // are tried when its best quality is below kDetailWins.
 constexpr double kSmoothWins = 62, kDetailWins = 84;
@@ -41,7 +41,7 @@ class Search {
          const std::function<Status(Trial&)>& run)
       : targets_(targets),
         base_(base),
-        most_harmonics_(HarmonicLimitsOf(vertices).most()),
+        max_harmonics_(HarmonicLimitsOf(vertices).most()),
         run_(run),
         free_{targets.kg && targets.sted, true, !base.harmonics, targets.kg && targets.sted ? 1.0 : 0.6} {}
 
@@ -49,7 +49,7 @@ class Search {
 
  private:
   struct Tried {
-    Place place;
+    SearchPoint point;
     bool detail;
     Trial trial;
   };
@@ -64,20 +64,20 @@ class Search {
   // The cost of a trial, plus its excess times the cost that it takes to reduce the excess. Less is better.
   double Merit(const Tried& tried) const;
 
-  Place Extreme(const Branch& branch) const;
-  Status SearchBranch(const Branch& branch, double quality);
-  Status Evaluate(const Place& place, const Branch& branch);
-  OperatingPoint Point(const Place& place, const Branch& branch) const {
-    return PointOf(place, branch, base_.harmonics.value_or(0), most_harmonics_);
+  SearchPoint Extreme(const CodingMode& mode) const;
+  Status SearchMode(const CodingMode& mode, double quality);
+  Status Evaluate(const SearchPoint& point, const CodingMode& mode);
+  OperatingPoint Point(const SearchPoint& point, const CodingMode& mode) const {
+    return PointOf(point, mode, base_.harmonics.value_or(0), max_harmonics_);
   }
-  // The cheapest trial of a branch that meets the targets, null when there is none.
+  // The cheapest trial of a mode that meets the targets, null when there is none.
   const Tried* Best(bool detail) const;
   Status Choose(Trial& best) const;
   Status Unreachable() const;
 
   const RateTargets& targets_;
   const EncoderSettings& base_;
-  double most_harmonics_;  // largest number of harmonics that is worth trying and that decoders allow
+  double max_harmonics_;  // largest number of harmonics that is worth trying and that decoders allow
   const std::function<Status(Trial&)>& run_;
   const FreePlace free_;
   std::deque<Tried> tried_;
@@ -86,10 +86,10 @@ class Search {
 
 double Search::Excess(const RateFigures& figures) const {
   if (!BoundsDistortion()) return LogRatio(figures.bytes, *targets_.bpvf * bytes_of_bpvf_);
-  double most = -std::numeric_limits<double>::infinity();
-  if (targets_.kg) most = std::max(most, LogRatio(figures.kg, *targets_.kg));
-  if (targets_.sted) most = std::max(most, LogRatio(figures.sted, *targets_.sted));
-  return most;
+  double largest = -std::numeric_limits<double>::infinity();
+  if (targets_.kg) largest = std::max(largest, LogRatio(figures.kg, *targets_.kg));
+  if (targets_.sted) largest = std::max(largest, LogRatio(figures.sted, *targets_.sted));
+  return largest;
 }
 
 double Search::Cost(const RateFigures& figures) const {
@@ -101,20 +101,20 @@ double Search::Merit(const Tried& tried) const {
   return Cost(figures) + (BoundsDistortion() ? 2 : 10) * std::max(0.0, Excess(figures));
 }
 
-Status Search::Evaluate(const Place& place, const Branch& branch) {
+Status Search::Evaluate(const SearchPoint& point, const CodingMode& mode) {
   Trial trial;
-  trial.point = Point(place, branch);
-  trial.settings = SettingsOf(trial.point, place.quality, base_);
+  trial.point = Point(point, mode);
+  trial.settings = SettingsOf(trial.point, point.quality, base_);
   Status status = run_(trial);
   while (status.code() == StatusCode::kLimit && !base_.harmonics && trial.point.harmonics > kFewestHarmonics) {
-    most_harmonics_ = kFewer * trial.point.harmonics;
-    trial.point = Point(place, branch);
-    trial.settings = SettingsOf(trial.point, place.quality, base_);
+    max_harmonics_ = kFewer * trial.point.harmonics;
+    trial.point = Point(point, mode);
+    trial.settings = SettingsOf(trial.point, point.quality, base_);
     status = run_(trial);
   }
   SAC_RETURN_IF_ERROR(status);
   bytes_of_bpvf_ = static_cast<double>(trial.bytes) / trial.bpvf;
-  tried_.push_back({place, branch.detail, trial});
+  tried_.push_back({point, mode.detail, trial});
   return Status::Ok();
 }
 
@@ -127,78 +127,78 @@ const Search::Tried* Search::Best(bool detail) const {
   return best;
 }
 
-Status Search::SearchBranch(const Branch& branch, double quality) {
-  Place next;
-  next.quality = std::clamp(quality, branch.least_quality, branch.most_quality);
+Status Search::SearchMode(const CodingMode& mode, double quality) {
+  SearchPoint next;
+  next.quality = std::clamp(quality, mode.min_quality, mode.max_quality);
   int misses = 0;
   for (int i = 1;; ++i) {
-    SAC_RETURN_IF_ERROR(Evaluate(next, branch));
+    SAC_RETURN_IF_ERROR(Evaluate(next, mode));
     if (i == kMostTrials) return Status::Ok();
     std::vector<const Trial*> trials;
     const Tried* centre = nullptr;
     for (const Tried& t : tried_) {
-      if (t.detail != branch.detail) continue;
+      if (t.detail != mode.detail) continue;
       trials.push_back(&t.trial);
       if (!centre || Merit(t) < Merit(*centre)) centre = &t;
     }
     const RateModel model(trials, centre->trial);
-    const auto predict = [&](const Place& place) { return model.Predict(Point(place, branch)); };
+    const auto predict = [&](const SearchPoint& point) { return model.Predict(Point(point, mode)); };
     misses = Excess(FiguresOf(tried_.back().trial)) > 0 ? misses + 1 : 0;
     const double aim = std::max((1 + misses) * kAim, kFarthestAim);
     const bool far = std::abs(Excess(FiguresOf(centre->trial))) > kFar;
     const FreePlace free = far ? FreePlace{false, false, false, 0} : free_;
-    const ProposalProblem problem{[&](const Place& p) { return Excess(predict(p)) - aim; },
-                                  [&](const Place& p) { return Cost(predict(p)); },
+    const ProposalProblem problem{[&](const SearchPoint& p) { return Excess(predict(p)) - aim; },
+                                  [&](const SearchPoint& p) { return Cost(predict(p)); },
                                   !BoundsDistortion(),
-                                  branch,
+                                  mode,
                                   free,
                                   far ? 35.0 : 14.0};
-    const Tried* best = Best(branch.detail);
-    if (!best && BoundsDistortion() && problem.excess(Extreme(branch)) > (i == 1 ? 3 * kHopeless : kHopeless))
+    const Tried* best = Best(mode.detail);
+    if (!best && BoundsDistortion() && problem.excess(Extreme(mode)) > (i == 1 ? 3 * kHopeless : kHopeless))
       return Status::Ok();
-    next = Propose(problem, centre->place);
+    next = Propose(problem, centre->point);
     const double cost = problem.cost(next);
     if (best) {
       const bool near = Excess(FiguresOf(best->trial)) >= -kBand;
       if (Cost(FiguresOf(best->trial)) - cost < (near ? i * kGain : kGain / 2)) return Status::Ok();
     }
-    if (const Tried* other = Best(!branch.detail); other && i > 1 && cost > Cost(FiguresOf(other->trial)) + kBehind) {
+    if (const Tried* other = Best(!mode.detail); other && i > 1 && cost > Cost(FiguresOf(other->trial)) + kBehind) {
       return Status::Ok();
     }
-    const auto again = [&](const Tried& t) { return t.detail == branch.detail && t.place == next; };
+    const auto again = [&](const Tried& t) { return t.detail == mode.detail && t.point == next; };
     if (std::any_of(tried_.begin(), tried_.end(), again)) return Status::Ok();
   }
 }
 
-// The place of the branch with the smallest errors.
-Place Search::Extreme(const Branch& branch) const {
-  Place place;
-  place.quality = branch.most_quality;
-  if (free_.motion) place.log_motion = kFinestMotion;
-  if (free_.bits) place.more_bits = kMostMoreBits;
-  return place;
+// The point of the mode with the smallest errors.
+SearchPoint Search::Extreme(const CodingMode& mode) const {
+  SearchPoint point;
+  point.quality = mode.max_quality;
+  if (free_.motion) point.log_motion = kFinestMotion;
+  if (free_.bits) point.more_bits = kMostMoreBits;
+  return point;
 }
 
 Status Search::Run(Trial& best) {
   // 1. Begin with the quality that typically meets the targets.
-  double quality = kSmooth.least_quality;
-  if (targets_.kg) quality = std::max(quality, TypicalQuality(&Typical::kg, *targets_.kg));
+  double quality = kSmooth.min_quality;
+  if (targets_.kg) quality = std::max(quality, TypicalQuality(&TypicalFigures::kg, *targets_.kg));
   const double for_kg = quality;
-  if (targets_.sted) quality = std::max(quality, TypicalQuality(&Typical::sted, *targets_.sted));
-  if (!BoundsDistortion()) quality = TypicalQuality(&Typical::bpvf, *targets_.bpvf);
+  if (targets_.sted) quality = std::max(quality, TypicalQuality(&TypicalFigures::sted, *targets_.sted));
+  if (!BoundsDistortion()) quality = TypicalQuality(&TypicalFigures::bpvf, *targets_.bpvf);
 
   // 2. Try the smooth planes alone, then detail, unless one of the two is clearly cheaper. Targets for KG or the rate
   // that are typical of detail are tried with detail first. With a target for STED the smooth planes are tried too,
   // since they may reach it with fewer bytes.
   const bool first_detail = for_kg > kDetailQuality || (!targets_.sted && quality > kDetailQuality);
-  if (first_detail) SAC_RETURN_IF_ERROR(SearchBranch(kDetailed, quality));
+  if (first_detail) SAC_RETURN_IF_ERROR(SearchMode(kDetailed, quality));
   const Tried* detailed = Best(true);
-  if (!detailed || targets_.sted || detailed->place.quality < kDetailWins) {
-    SAC_RETURN_IF_ERROR(SearchBranch(kSmooth, std::min(quality, kDetailQuality)));
+  if (!detailed || targets_.sted || detailed->point.quality < kDetailWins) {
+    SAC_RETURN_IF_ERROR(SearchMode(kSmooth, std::min(quality, kDetailQuality)));
   }
   const Tried* smooth = Best(false);
-  if (!first_detail && (!smooth || smooth->place.quality > kSmoothWins)) {
-    SAC_RETURN_IF_ERROR(SearchBranch(kDetailed, std::max(quality, kDetailQuality)));
+  if (!first_detail && (!smooth || smooth->point.quality > kSmoothWins)) {
+    SAC_RETURN_IF_ERROR(SearchMode(kDetailed, std::max(quality, kDetailQuality)));
   }
   return Choose(best);
 }

@@ -3,21 +3,13 @@
 
 #include <cstdint>
 
+#include "codec/encode/operating_point.h"
 #include "sac/clip.h"
 #include "sac/encoder.h"
 #include "sac/status.h"
 #include "sac/stream_info.h"
 
 namespace sac {
-
-// The settings that a search chooses.
-struct OperatingPoint {
-  double motion_step = 0;        // radians and strain
-  double displacement_step = 0;  // fraction of the RMS radius
-  double detail_step = 0;        // fraction of the RMS radius; 0: no detail plane
-  double position_bits = 0;      // log2 of the extent in the I-frame's steps
-  double harmonics = 0;
-};
 
 // An encoding with given settings, and its result.
 struct Trial {

@@ -66,11 +66,11 @@ std::vector<std::uint32_t> ShareHarmonics(const DecodedMesh& mesh, std::uint32_t
 
 // Chooses the settings that the caller left open, by the quality or by the bound on the error. The steps of
 // displacement and detail are fractions of the RMS radius `rms`, which is in model units.
-Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, double rms, QualitySettings& defaults) {
+Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, double rms, OperatingPoint& defaults) {
   if (!settings.max_error) {
     HarmonicLimits limits = HarmonicLimitsOf(static_cast<std::uint32_t>(first.positions.size()));
     if (settings.harmonics) limits.useful = limits.quick = *settings.harmonics;
-    defaults = SettingsOfQuality(settings.quality, limits);
+    defaults = PointOfQuality(settings.quality, limits);
     return Status::Ok();
   }
   if (const double least = LeastMaxError(first.positions); *settings.max_error < least) {
@@ -79,15 +79,13 @@ Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, double
             << ", is below the precision of the coordinates; the smallest possible is " << least;
     return Status::InvalidArgument(message.str());
   }
-  const BoundedSettings bounded = SettingsOfMaxError(*settings.max_error, first.positions);
-  defaults = {settings.quality,          bounded.motion_step,   bounded.displacement_step / rms,
-              bounded.detail_step / rms, bounded.position_bits, bounded.harmonics};
+  defaults = PointOfMaxError(*settings.max_error, first.positions, rms);
   return Status::Ok();
 }
 
 // The sequence header without the position grid and the number of harmonics, which are filled in later.
 SequenceHeader HeaderOf(const Mesh& first, const EncoderSettings& settings, double rms,
-                        const QualitySettings& defaults) {
+                        const OperatingPoint& defaults) {
   SequenceHeader header;
   const double displacement_step = settings.displacement_step.value_or(defaults.displacement_step);
   if (settings.max_error) {
@@ -134,7 +132,7 @@ Status FinishIFrame(DecodedMesh mesh, const Limits& limits, IFrameSyntax& syntax
 Status EncodeStart(const Mesh& first, const EncoderSettings& settings, double share, EncodedStart& start) {
   start = {};
   SAC_RETURN_IF_ERROR(Progress(settings));
-  QualitySettings defaults{};
+  OperatingPoint defaults{};
   const double rms = RmsRadius(first.positions);
   SAC_RETURN_IF_ERROR(ChooseDefaults(first, settings, rms, defaults));
   start.header = HeaderOf(first, settings, rms, defaults);

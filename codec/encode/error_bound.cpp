@@ -57,7 +57,7 @@ double DistanceAfterRounding(const Eigen::RowVector3d& exact, const Eigen::RowVe
   return std::sqrt(squares);
 }
 
-BoundedSettings SettingsOfMaxError(double max_error, const Positions& first_frame) {
+OperatingPoint PointOfMaxError(double max_error, const Positions& first_frame, double rms) {
   double diagonal = BoundingBox(first_frame).diagonal();
   if (diagonal == 0) diagonal = std::max(LargestCoordinate(first_frame), max_error);  // a single point
   const double bound = max_error / diagonal;
@@ -69,8 +69,8 @@ BoundedSettings SettingsOfMaxError(double max_error, const Positions& first_fram
   // A residual is at most 2^20 steps, so detail with a finer step could not reach across the shape. Corrections code
   // the remaining error.
   if (bound < 1e-6) detail = std::max(detail, 2.7e-5 * diagonal);
-  return {0.02 * finer, 1.3e-4 * diagonal * finer, detail, std::clamp(std::ceil(0.5 - std::log2(bound)), 7.0, 20.0),
-          200};
+  const double bits = std::clamp(std::ceil(0.5 - std::log2(bound)), 7.0, 20.0);
+  return {0.02 * finer, 1.3e-4 * diagonal * finer / rms, detail / rms, bits, 200};
 }
 
 }  // namespace sac

@@ -3,6 +3,7 @@
 
 #include <Eigen/Core>
 
+#include "codec/encode/operating_point.h"
 #include "geometry/laplacian.h"
 #include "sac/mesh.h"
 
@@ -25,15 +26,8 @@ double CorrectionStep(double max_error, const Positions& first_frame);
 // is 0 where the sum rounds back to `exact`.
 double DistanceAfterRounding(const Eigen::RowVector3d& exact, const Eigen::RowVector3d& error);
 
-// The steps and bits with which a bound on the error takes few bytes, found by measurement (docs/rate-control.md).
-struct BoundedSettings {
-  double motion_step;        // radians and strain
-  double displacement_step;  // model units
-  double detail_step;        // model units
-  double position_bits;      // log2 of the extent in the I-frame's steps
-  double harmonics;
-};
-// The settings for the bound `max_error`, model units.
-BoundedSettings SettingsOfMaxError(double max_error, const Positions& first_frame);
+// The settings with which the bound `max_error`, model units, takes few bytes, found by measurement
+// (docs/rate-control.md). `rms` is the first frame's RMS radius, model units.
+OperatingPoint PointOfMaxError(double max_error, const Positions& first_frame, double rms);
 
 }  // namespace sac

@@ -3,17 +3,9 @@
 
 #include <cstdint>
 
-namespace sac {
+#include "codec/encode/operating_point.h"
 
-// The settings that one quality stands for.
-struct QualitySettings {
-  double quality;
-  double motion_step;        // radians and strain
-  double displacement_step;  // fraction of the RMS radius
-  double detail_step;        // fraction of the RMS radius; 0: no detail plane
-  double position_bits;      // log2 of the extent in the I-frame's steps
-  double harmonics;
-};
+namespace sac {
 
 // The quality from which streams have a detail plane. Where the number of harmonics is capped, detail begins a little
 // earlier.
@@ -34,9 +26,9 @@ HarmonicLimits HarmonicLimitsOf(std::uint32_t vertices);
 // `quality` from 0 to 100, and beyond with the last rows' ratios: from a table measured on several clips
 // (docs/quality.md), interpolated between those of its rows that have no more than `limits.useful` harmonics; the
 // result has no more than `limits.quick`.
-QualitySettings SettingsOfQuality(double quality, const HarmonicLimits& limits);
+OperatingPoint PointOfQuality(double quality, const HarmonicLimits& limits);
 
 // The same without a detail plane: beyond kDetailQuality the other steps become finer instead.
-QualitySettings SmoothSettingsOfQuality(double quality, double most_harmonics);
+OperatingPoint SmoothPointOfQuality(double quality, double max_harmonics);
 
 }  // namespace sac

@@ -16,15 +16,15 @@ struct Scored {
   References references;
 };
 
-void KeepBest(std::vector<Scored>& scored, std::size_t most) {
+void KeepBest(std::vector<Scored>& scored, std::size_t limit) {
   std::stable_sort(scored.begin(), scored.end(), [](const Scored& a, const Scored& b) { return a.bits < b.bits; });
-  if (scored.size() > most) scored.resize(most);
+  if (scored.size() > limit) scored.resize(limit);
 }
 
 }  // namespace
 
 std::vector<References> LikelyReferences(std::uint32_t coded,
-                                         const std::function<double(const References&)>& motion_bits, double most) {
+                                         const std::function<double(const References&)>& motion_bits, double limit) {
   const auto score = [&](References references) {
     const double bits = motion_bits(references);
     return Scored{bits, references};
@@ -42,10 +42,10 @@ std::vector<References> LikelyReferences(std::uint32_t coded,
   std::vector<References> likely;
   for (auto* scored : {&singles, &pairs}) {
     for (Scored& s : *scored) {
-      if (s.bits <= most) likely.push_back(s.references);
+      if (s.bits <= limit) likely.push_back(s.references);
     }
   }
-  if (motion_bits({}) <= most) likely.emplace_back();
+  if (motion_bits({}) <= limit) likely.emplace_back();
   return likely;
 }
 

@@ -187,9 +187,9 @@ TEST(RateSearch, QualityIsMonotone) {
 
 // With few harmonics to go by; with more, detail takes over from them and the smooth planes become coarser again.
 TEST(RateSearch, StepsOfQualitiesNeverGrow) {
-  QualitySettings last = SettingsOfQuality(0, {200, 200});
+  OperatingPoint last = PointOfQuality(0, {200, 200});
   for (double quality = 0.5; quality <= 100; quality += 0.5) {
-    const QualitySettings s = SettingsOfQuality(quality, {200, 200});
+    const OperatingPoint s = PointOfQuality(quality, {200, 200});
     EXPECT_LE(s.motion_step, last.motion_step) << quality;
     EXPECT_LE(s.displacement_step, last.displacement_step) << quality;
     EXPECT_GE(s.position_bits, last.position_bits) << quality;
@@ -208,22 +208,22 @@ TEST(RateSearch, HarmonicsOfQualitiesSuitTheMesh) {
     EXPECT_GE(most, 200);
     EXPECT_LE(most, std::max(200.0, vertices / 9.0));
     for (double quality = 0; quality <= 100; quality += 0.5) {
-      EXPECT_LE(SettingsOfQuality(quality, limits).harmonics, most) << vertices << " " << quality;
-      EXPECT_LE(SmoothSettingsOfQuality(quality, most).harmonics, most) << vertices << " " << quality;
-      EXPECT_EQ(SmoothSettingsOfQuality(quality, most).detail_step, 0);
+      EXPECT_LE(PointOfQuality(quality, limits).harmonics, most) << vertices << " " << quality;
+      EXPECT_LE(SmoothPointOfQuality(quality, most).harmonics, most) << vertices << " " << quality;
+      EXPECT_EQ(SmoothPointOfQuality(quality, most).detail_step, 0);
     }
-    EXPECT_EQ(SettingsOfQuality(50, limits).harmonics, 200);  // what starts quickly
+    EXPECT_EQ(PointOfQuality(50, limits).harmonics, 200);  // what starts quickly
   }
-  EXPECT_GT(SettingsOfQuality(70, HarmonicLimitsOf(10'000)).harmonics, 500);
+  EXPECT_GT(PointOfQuality(70, HarmonicLimitsOf(10'000)).harmonics, 500);
 }
 
 // Where decoders could not start in time with more harmonics, the steps still become finer up to where detail sets in:
 // coarse detail would make STED worse.
 TEST(RateSearch, QualitiesOfLargeMeshesDoWithoutCoarseDetail) {
   const HarmonicLimits limits = HarmonicLimitsOf(60'000);
-  QualitySettings last = SettingsOfQuality(60, limits);
+  OperatingPoint last = PointOfQuality(60, limits);
   for (const double quality : {65.0, 70.0, 75.0}) {
-    const QualitySettings s = SettingsOfQuality(quality, limits);
+    const OperatingPoint s = PointOfQuality(quality, limits);
     EXPECT_EQ(s.detail_step, 0) << quality;
     EXPECT_EQ(s.harmonics, 200) << quality;
     EXPECT_LT(s.displacement_step, last.displacement_step) << quality;

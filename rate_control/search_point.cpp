@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "rate_control/place.h"
+#include "rate_control/search_point.h"
 
 #include <algorithm>
 #include <array>
@@ -11,39 +11,40 @@
 namespace sac {
 namespace {
 
-constexpr double kLeastBits = 4, kMostBits = 20;
+constexpr double kMinBits = 4, kMaxBits = 20;
 
 // Means over the clips of docs/quality.md.
-constexpr std::array<Typical, 10> kTypical = {{{0, 4.8, 0.22, 0.06},
-                                               {10, 2.9, 0.12, 0.085},
-                                               {25, 1.9, 0.075, 0.12},
-                                               {50, 1.35, 0.051, 0.16},
-                                               {60, 1, 0.042, 0.2},
-                                               {70, 0.55, 0.035, 0.29},
-                                               {75, 0.45, 0.033, 0.36},
-                                               {80, 0.2, 0.0325, 0.66},
-                                               {90, 0.1, 0.02, 1.2},
-                                               {100, 0.026, 0.007, 2.9}}};
+constexpr std::array<TypicalFigures, 10> kTypical = {{{0, 4.8, 0.22, 0.06},
+                                                      {10, 2.9, 0.12, 0.085},
+                                                      {25, 1.9, 0.075, 0.12},
+                                                      {50, 1.35, 0.051, 0.16},
+                                                      {60, 1, 0.042, 0.2},
+                                                      {70, 0.55, 0.035, 0.29},
+                                                      {75, 0.45, 0.033, 0.36},
+                                                      {80, 0.2, 0.0325, 0.66},
+                                                      {90, 0.1, 0.02, 1.2},
+                                                      {100, 0.026, 0.007, 2.9}}};
 
 }  // namespace
 
-OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t fixed_harmonics, double most_harmonics) {
-  const double most = fixed_harmonics > 0 ? fixed_harmonics : most_harmonics;
-  QualitySettings s;
-  if (branch.detail) {
+OperatingPoint PointOf(const SearchPoint& point, const CodingMode& mode, std::uint32_t fixed_harmonics,
+                       double max_harmonics) {
+  const double limit = fixed_harmonics > 0 ? fixed_harmonics : max_harmonics;
+  OperatingPoint s;
+  if (mode.detail) {
     // Using only the table's rows with few harmonics, so that detail begins early enough.
-    s = SettingsOfQuality(place.quality, {});
+    s = PointOfQuality(point.quality, {});
   } else {
-    s = SmoothSettingsOfQuality(place.quality, most);
+    s = SmoothPointOfQuality(point.quality, limit);
   }
   double harmonics = fixed_harmonics;
   if (fixed_harmonics == 0) {
-    harmonics = std::round(std::min(s.harmonics * std::exp(place.log_harmonics), most));
+    harmonics = std::round(std::min(s.harmonics * std::exp(point.log_harmonics), limit));
     harmonics = std::clamp(harmonics, 1.0, static_cast<double>(Limits{}.expert.harmonics));
   }
   // Position bits are rounded to three digits, as documents and reports show them.
-  return {s.motion_step * std::exp(place.log_motion), s.displacement_step, s.detail_step,
-          std::clamp(std::round(1e3 * (s.position_bits + place.more_bits)) / 1e3, kLeastBits, kMostBits), harmonics};
+  return {s.motion_step * std::exp(point.log_motion), s.displacement_step, s.detail_step,
+          std::clamp(std::round(1e3 * (s.position_bits + point.more_bits)) / 1e3, kMinBits, kMaxBits), harmonics};
 }
 
 EncoderSettings SettingsOf(const OperatingPoint& point, double quality, const EncoderSettings& base) {
@@ -57,16 +58,16 @@ EncoderSettings SettingsOf(const OperatingPoint& point, double quality, const En
   return s;
 }
 
-Typical TypicalOf(double quality) {
+TypicalFigures TypicalOf(double quality) {
   std::size_t i = 1;
   while (i + 1 < kTypical.size() && kTypical[i].quality < quality) ++i;
-  const Typical &a = kTypical[i - 1], &b = kTypical[i];
+  const TypicalFigures &a = kTypical[i - 1], &b = kTypical[i];
   const double t = (quality - a.quality) / (b.quality - a.quality);
   const auto between = [t](double from, double to) { return from * std::pow(to / from, t); };
   return {quality, between(a.kg, b.kg), between(a.sted, b.sted), between(a.bpvf, b.bpvf)};
 }
 
-double TypicalQuality(double Typical::*figure, double target) {
+double TypicalQuality(double TypicalFigures::*figure, double target) {
   const bool falls = kTypical.front().*figure > kTypical.back().*figure;
   for (std::size_t i = 1; i < kTypical.size(); ++i) {
     const double a = kTypical[i - 1].*figure, b = kTypical[i].*figure;

@@ -10,38 +10,39 @@ namespace sac {
 
 // A point of the search space. It stands for the steps, bits and harmonics of `quality` in the table of qualities
 // (codec/encode/quality.h), some of them changed.
-struct Place {
+struct SearchPoint {
   double quality = 50;       // the table is continued below 0 and above 100
   double log_motion = 0;     // natural logarithm of the ratio of the motion step to the table's
   double more_bits = 0;      // position bits beyond the table's
   double log_harmonics = 0;  // natural logarithm of the ratio of the number of harmonics to the table's
 
-  bool operator==(const Place&) const = default;
+  bool operator==(const SearchPoint&) const = default;
 };
 
 // One of the two ways of coding that a search tries, with the range of qualities tried: motion and displacement alone
 // (the smooth planes), or these with few harmonics and a detail plane.
-struct Branch {
+struct CodingMode {
   bool detail;
-  double least_quality, most_quality;
+  double min_quality, max_quality;
 };
-inline constexpr Branch kSmooth{false, -40, 95}, kDetailed{true, 60.6, 125};
+inline constexpr CodingMode kSmooth{false, -40, 95}, kDetailed{true, 60.6, 125};
 
-// The settings that `place` stands for. The number of harmonics is `fixed_harmonics` or, when that is 0, at most
-// `most_harmonics`.
-OperatingPoint PointOf(const Place& place, const Branch& branch, std::uint32_t fixed_harmonics, double most_harmonics);
+// The settings that `point` stands for. The number of harmonics is `fixed_harmonics` or, when that is 0, at most
+// `max_harmonics`.
+OperatingPoint PointOf(const SearchPoint& point, const CodingMode& mode, std::uint32_t fixed_harmonics,
+                       double max_harmonics);
 
 // `base` with the settings of `point`, and with `quality` limited to 0..100.
 EncoderSettings SettingsOf(const OperatingPoint& point, double quality, const EncoderSettings& base);
 
 // The errors and the rate that a quality typically gives: KG in percent, STED, and bits per vertex and frame. A search
 // begins with them.
-struct Typical {
+struct TypicalFigures {
   double quality, kg, sted, bpvf;
 };
 // What a quality from 0 to 100 comes to on most clips.
-Typical TypicalOf(double quality);
+TypicalFigures TypicalOf(double quality);
 // The quality at which the member `figure` typically equals `target`.
-double TypicalQuality(double Typical::*figure, double target);
+double TypicalQuality(double TypicalFigures::*figure, double target);
 
 }  // namespace sac
