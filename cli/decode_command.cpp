@@ -35,7 +35,7 @@ struct WantedFrames {
 struct DecodeOptions {
   std::string input, output, order_map;
   WantedFrames frames;
-  std::uint32_t first_number = 0;  // of the first frame, in the names of a sequence
+  std::int64_t first_number = 0;  // of the first frame, in the names of a sequence
   AxisConversion axes;
   bool skip_damage = false, force = false, strict = false;
 };
@@ -91,6 +91,7 @@ class Decoding {
   std::uint32_t written_ = 0;  // the frame after the last one written
   Positions first_;            // of frame 0, which the normals belong to
   Positions last_;             // with skip_damage
+  Warnings lost_;
 };
 
 // Needs the decoded mesh.
@@ -116,7 +117,7 @@ Status Decoding::OpenOutput(const Decoder& decoder) {
 
 Status Decoding::Write(std::uint32_t index, const Positions& positions) {
   written_ = index + 1;
-  return output_->Write(std::uint64_t{index} + options_.first_number,
+  return output_->Write(index + options_.first_number,
                         options_.axes.Points(order_.empty() ? positions : ToInputOrder(positions, order_)));
 }
 
@@ -158,8 +159,8 @@ Status Decoding::Run() {
     if (options_.skip_damage) last_ = std::move(frame.positions);
   }
   for (const FrameRange& lost : frames.decoder().lost_frames()) {
-    std::fprintf(stderr, "sac: %s: frames %u to %u are lost; the frame before stands for them\n", input.name().c_str(),
-                 lost.first, lost.first + lost.count - 1);
+    lost_.push_back(input.name() + ": frames " + std::to_string(lost.first) + " to " +
+                    std::to_string(lost.first + lost.count - 1) + " are lost; the frame before stands for them");
     if (const std::uint64_t after = std::uint64_t{lost.first} + lost.count; output_ && after > count) {
       count = static_cast<std::uint32_t>(std::min<std::uint64_t>(after, range.end.value_or(0xffffffffu)));
       SAC_RETURN_IF_ERROR(FillUpTo(count, last_));
@@ -175,7 +176,8 @@ Status Decoding::Run() {
 }
 
 Status Decoding::Commit() {
-  Warnings warnings = output_->warnings();
+  Warnings warnings = lost_;
+  for (std::string& warning : output_->warnings()) warnings.push_back(std::move(warning));
   // Who asks for some of the frames may have others there on purpose.
   const bool whole = options_.frames.begin == 0 && !options_.frames.end;
   if (const std::string stale = whole ? output_->StaleFrames() : std::string(); !stale.empty()) {
@@ -231,7 +233,7 @@ Command AddDecodeCommand(CLI::App& app) {
       ->option_text("FILE");
   command->add_flag("--skip-damage", options->skip_damage,
                     "go on after damage with the next group that is sound, and tell which frames are lost");
-  AddNumber(*command, "--first-number", options->first_number, 0u, 0xffffffffu,
+  AddNumber(*command, "--first-number", options->first_number, std::int64_t{-0x80000000LL}, std::int64_t{0xffffffffLL},
             "the number of frame 0 in the names of a sequence [0]");
   AddAxes(*command, options->axes);
   command->add_flag("--force", options->force, "replace a mesh that is there beside the cache to write");

@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <optional>
 #include <span>
@@ -105,6 +106,10 @@ Status EncodeFiles(const EncodeOptions& options, EncodedClip& encoded, Warnings&
   ClipEncoding encoding = options.encoding;
   encoding.encoder.offset = input->offset();
   SAC_RETURN_IF_ERROR(TakeMaxError(options, input->mesh(), encoding.encoder));
+  // A stream that ends early is worth more than none, but not more than the file that is there.
+  std::error_code ignored;
+  const bool keeps_part =
+      !options.strict && (options.output == "-" || !std::filesystem::exists(options.output, ignored));
   // The outputs before the harmonics, which take long.
   OutputFile stream, order_map;
   SAC_RETURN_IF_ERROR(stream.Open(options.output));
@@ -117,7 +122,7 @@ Status EncodeFiles(const EncodeOptions& options, EncodedClip& encoded, Warnings&
   };
   const auto sink = [&stream](std::span<const std::uint8_t> bytes) { return stream.Write(bytes.data(), bytes.size()); };
   const Status coded = EncodeClip(*input, encoding, sink, encoded);
-  if (!coded.ok() && encoded.frames == 0) return coded;
+  if (!coded.ok() && (encoded.frames == 0 || !keeps_part)) return coded;
   warnings = input->warnings();
   if (coded.ok()) {
     const double diagonal = BoundingBox(input->mesh().positions).diagonal();

@@ -102,6 +102,7 @@ Status ClipInput::OpenSequence() {
   SAC_RETURN_IF_ERROR(CheckAttributes(file_.mesh, paths_[0]));
   SAC_RETURN_IF_ERROR(CheckPositions(file_, paths_[0]));
   warnings_.insert(warnings_.begin(), file_.warnings.begin(), file_.warnings.end());
+  for (const std::string& warning : file_.warnings) told_losses_.insert(warning.substr(paths_[0].size()));
   offset_ = settings_.offset.value_or(ChooseOffset(file_.exact));
   file_.mesh.positions = Relative(file_, offset_);
   file_.exact = {};
@@ -153,6 +154,16 @@ Status ClipInput::ReadFrame(std::uint32_t index, MeshFile& file) const {
 void ClipInput::Tell(bool& told, const std::string& warning) {
   if (!told) warnings_.push_back(warning);
   told = true;
+}
+
+void ClipInput::TellLosses(const MeshFile& file, const std::string& path) {
+  constexpr std::size_t kMostTold = 16;
+  for (const std::string& warning : file.warnings) {
+    // The same of another file is no news.
+    if (told_losses_.size() < kMostTold && told_losses_.insert(warning.substr(path.size())).second) {
+      warnings_.push_back(warning);
+    }
+  }
 }
 
 void ClipInput::TellChanges(const MeshFile& file, const std::string& path) {
@@ -209,6 +220,7 @@ Status ClipInput::NextOfSequence(Positions& frame) {
   }
   SAC_RETURN_IF_ERROR(CheckPositions(file, path));
   TellChanges(file, path);
+  TellLosses(file, path);
   frame = Relative(file, offset_);
   TellCoarse(frame, path);
   return Status::Ok();

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -72,6 +73,8 @@ class ClipInput : public ClipReader {
 
   // Adds a warning about a frame after the first; `told` remembers that its kind needs no other.
   void Tell(bool& told, const std::string& warning);
+  // Adds what a later file of a sequence holds beyond a frame, where no file before has held the same.
+  void TellLosses(const MeshFile& file, const std::string& path);
   void TellChanges(const MeshFile& file, const std::string& path);
   void TellCoarse(const Positions& frame, const std::string& where);
 
@@ -85,6 +88,7 @@ class ClipInput : public ClipReader {
   std::optional<Welding> welding_;  // of a sequence of STL files
   std::unique_ptr<CacheReader> cache_;
   Warnings warnings_;
+  std::set<std::string> told_losses_;  // warnings of files without their paths
   bool told_colors_ = false, told_uvs_ = false, told_normals_ = false, told_coarse_ = false;
   double diagonal_ = 0;  // of the largest frame so far
   std::uint32_t next_ = 0;

@@ -58,14 +58,14 @@ Status ClipOutput::WriteMeshFile(const std::string& path, const Positions& posit
   return Status::Ok();
 }
 
-Status ClipOutput::Write(std::uint64_t number, const Positions& positions) {
+Status ClipOutput::Write(std::int64_t number, const Positions& positions) {
   if (positions.size() != mesh_.positions.size()) {
     return Status::InvalidArgument(path_ + ": a frame of " + std::to_string(positions.size()) + " vertices, not " +
                                    std::to_string(mesh_.positions.size()));
   }
   if (pattern_) {
-    last_number_ = std::max(last_number_, static_cast<std::int64_t>(number));
-    return WriteMeshFile(pattern_->Path(static_cast<std::int64_t>(number)), positions, true);
+    last_number_ = std::max(last_number_, number);
+    return WriteMeshFile(pattern_->Path(number), positions, true);
   }
   if (!cache_) {
     if (!mesh_files_.empty()) {
@@ -80,7 +80,7 @@ Status ClipOutput::Write(std::uint64_t number, const Positions& positions) {
   return WriteToCache(number, positions);
 }
 
-Status ClipOutput::WriteToCache(std::uint64_t number, const Positions& positions) {
+Status ClipOutput::WriteToCache(std::int64_t number, const Positions& positions) {
   if (offset_ == std::array<double, 3>{}) return cache_->Write(positions);
   Positions moved = positions;
   for (std::size_t v = 0; v < moved.size(); ++v) {

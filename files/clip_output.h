@@ -3,6 +3,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -47,7 +48,7 @@ class ClipOutput {
   // Appends a frame. `number` names its file in a sequence; a cache has no numbers. Every mesh file has the normals of
   // its frame, carried over from the mesh (sac/frame_normals.h). kInvalidArgument where a cache cannot hold a
   // coordinate, and where another mesh is there beside a cache, which the user has not named, unless settings.force.
-  Status Write(std::uint64_t number, const Positions& positions);
+  Status Write(std::int64_t number, const Positions& positions);
 
   // Gives all files their names. kInvalidArgument if there was no frame.
   Status Commit();
@@ -59,12 +60,12 @@ class ClipOutput {
   // `named`: whether the user has named the file.
   Status WriteMeshFile(const std::string& path, const Positions& positions, bool named);
 
-  Status WriteToCache(std::uint64_t number, const Positions& positions);
+  Status WriteToCache(std::int64_t number, const Positions& positions);
 
   std::string path_;
   Mesh mesh_;
   bool force_ = false;
-  std::int64_t last_number_ = -1;
+  std::int64_t last_number_ = std::numeric_limits<std::int64_t>::min();
   std::optional<FrameNormals> normals_;
   std::array<double, 3> offset_ = {};
   double precision_ = 0;

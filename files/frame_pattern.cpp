@@ -125,18 +125,22 @@ std::string FramePattern::Path(std::int64_t number) const {
   return directory_ + prefix_ + sign + std::string(length < width_ ? width_ - length : 0, '0') + digits + suffix_;
 }
 
-bool FramePattern::Matches(const std::string& name, std::int64_t& number) const {
+bool FramePattern::Matches(const std::string& name, std::optional<std::int64_t>& number) const {
   if (name.size() <= prefix_.size() + suffix_.size() || name.compare(0, prefix_.size(), prefix_) != 0 ||
       name.compare(name.size() - suffix_.size(), suffix_.size(), suffix_) != 0) {
     return false;
   }
   const std::string_view digits =
       std::string_view(name).substr(prefix_.size(), name.size() - prefix_.size() - suffix_.size());
-  const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), number);
-  if (result.ec != std::errc() || result.ptr != digits.data() + digits.size()) return false;
-  if (any_digits_ || directory_ + name == Path(number)) return true;
+  std::int64_t value = 0;
+  const auto result = std::from_chars(digits.data(), digits.data() + digits.size(), value);
+  if (result.ec == std::errc::invalid_argument || result.ptr != digits.data() + digits.size()) return false;
+  number.reset();
+  if (result.ec == std::errc::result_out_of_range) return true;
+  number = value;
+  if (any_digits_ || directory_ + name == Path(value)) return true;
   // Frames before 0 are also written with the sign before all of the digits.
-  return number < 0 && digits.size() == width_ + 1;
+  return value < 0 && digits.size() == width_ + 1;
 }
 
 Status FramePattern::List(std::map<std::int64_t, std::string>& files) const {
@@ -146,9 +150,10 @@ Status FramePattern::List(std::map<std::int64_t, std::string>& files) const {
   fs::directory_iterator entry(directory_.empty() ? "." : directory_, error);
   for (; !error && entry != fs::directory_iterator(); entry.increment(error)) {
     const std::string name = entry->path().filename().string();
-    std::int64_t number = 0;
+    std::optional<std::int64_t> number;
     if (!Matches(name, number)) continue;
-    const auto [other, added] = files.try_emplace(number, directory_ + name);
+    if (!number) return Status::InvalidArgument(directory_ + name + ": its frame number is too large");
+    const auto [other, added] = files.try_emplace(*number, directory_ + name);
     if (!added) {
       // A directory has no order of its own.
       const std::string path = directory_ + name;

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 
 #include "sac/status.h"
@@ -29,12 +30,14 @@ class FramePattern {
   const std::string& text() const { return text_; }
 
   // The files that exist, by number, which may be negative. With * a minus sign before every number is none. kIoError,
-  // naming the pattern, if there are none or the directory cannot be read; kInvalidArgument if two have one number.
+  // naming the pattern, if there are none or the directory cannot be read; kInvalidArgument if two have one number, or
+  // one is beyond 63 bits.
   Status List(std::map<std::int64_t, std::string>& files) const;
 
  private:
-  // Whether a name in the directory is one of the pattern's; `number` becomes its number.
-  bool Matches(const std::string& name, std::int64_t& number) const;
+  // Whether a name in the directory is one of the pattern's; `number` becomes its number, nothing where it is too
+  // large.
+  bool Matches(const std::string& name, std::optional<std::int64_t>& number) const;
 
   std::string text_, directory_, prefix_, suffix_;
   std::size_t width_ = 0;

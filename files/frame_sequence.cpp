@@ -88,7 +88,7 @@ Status TakeNumbered(const std::string& name, const NumberedFiles& files, Gaps ga
 // A path with its last run of digits cut out, and their number.
 struct Numbered {
   std::string before, after;
-  std::int64_t number = 0;
+  std::optional<std::int64_t> number;  // nothing where it is too large
 };
 
 std::optional<Numbered> SplitNumber(const std::string& path) {
@@ -98,9 +98,9 @@ std::optional<Numbered> SplitNumber(const std::string& path) {
   if (last == std::string::npos || last < name) return std::nullopt;
   std::size_t first = last;
   while (first > name && path[first - 1] >= '0' && path[first - 1] <= '9') --first;
-  Numbered split{path.substr(0, first), path.substr(last + 1), 0};
-  if (std::from_chars(path.data() + first, path.data() + last + 1, split.number).ec != std::errc()) return std::nullopt;
-  return split;
+  std::int64_t number = 0;
+  const bool fits = std::from_chars(path.data() + first, path.data() + last + 1, number).ec == std::errc();
+  return Numbered{path.substr(0, first), path.substr(last + 1), fits ? std::optional(number) : std::nullopt};
 }
 
 // The numbered mesh files of a directory, which must be of one sequence.
@@ -113,7 +113,8 @@ Status ListDirectory(const std::string& directory, std::string& name, NumberedFi
     if (!IsReadableMeshName(path)) continue;
     const std::optional<Numbered> split = SplitNumber(path);
     if (!split) continue;
-    const auto [other, added] = sequences[{split->before, split->after}].try_emplace(split->number, path);
+    if (!split->number) return Status::InvalidArgument(path + ": its frame number is too large");
+    const auto [other, added] = sequences[{split->before, split->after}].try_emplace(*split->number, path);
     if (!added) {
       // A directory has no order of its own.
       const auto& [first, second] = std::minmax(other->second, path);

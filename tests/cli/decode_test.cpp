@@ -292,6 +292,9 @@ TEST_F(DecodeTest, DamageCanBeSkipped) {
         outcome.err.find("damaged.sac: frames " + std::to_string(first) + " to " + std::to_string(last) + " are lost"),
         std::string::npos)
         << outcome.err;
+    const std::string kept = Read("out.pc2");
+    EXPECT_EQ(Sac({"decode", "damaged.sac", "-o", "out.pc2", "--skip-damage", "--force", "--strict"}).code, 1);
+    EXPECT_EQ(Read("out.pc2"), kept);
     std::vector<Positions> expected = good;
     for (std::size_t f = first; f <= last; ++f) expected[f] = good[first == 0 ? 5 : first - 1];
     EXPECT_EQ(LoadCache("out.pc2"), expected) << first;

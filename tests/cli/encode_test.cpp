@@ -215,6 +215,12 @@ TEST_F(EncodeTest, EndsBeforeAFrameThatCannotBeCoded) {
   Good({"decode", "5.sac", "-o", "five.pc2", "--order-map", "5.map"});
   EXPECT_EQ(ends("7.sac", {"--low-delay"}), "sac: " + fault + "; 7.sac has the 7 frames before\n");
   EXPECT_NE(Good({"info", "7.sac"}).find("frames                   7"), std::string::npos);
+  // What is there is kept, and --strict leaves nothing.
+  const std::string before = Read("7.sac");
+  EXPECT_EQ(ends("7.sac", {"--low-delay", "--quality", "20"}), "sac: " + fault + "\n");
+  EXPECT_EQ(Read("7.sac"), before);
+  EXPECT_EQ(ends("strict.sac", {"--low-delay", "--strict"}), "sac: " + fault + "\n");
+  EXPECT_FALSE(std::filesystem::exists(Path("strict.sac")));
 }
 
 TEST_F(EncodeTest, SaysThatTextureCoordinatesAreLost) {

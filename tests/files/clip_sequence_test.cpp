@@ -135,6 +135,15 @@ TEST_F(ClipSequenceTest, AMovingQuadKeepsItsTriangles) {
   EXPECT_EQ(Short(other->Next(frame, end).message()), "g1.obj: its faces are not those of g0.obj");
 }
 
+TEST_F(ClipSequenceTest, WhatALaterFileLosesIsTold) {
+  const std::string triangle = "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
+  const auto clip = Open({directory_.Write("f0.obj", triangle), directory_.Write("f1.obj", "g arm\n" + triangle),
+                          directory_.Write("f2.obj", "g arm\n" + triangle)});
+  EXPECT_TRUE(Told(*clip).empty());
+  EXPECT_EQ(Frames(*clip).size(), 3U);
+  EXPECT_EQ(Told(*clip), Warnings{"f1.obj: groups (1) are not kept"});  // once
+}
+
 // Two triangles with a common edge, the second moved by `x`.
 std::vector<Positions> Hinge(float x) {
   return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0 + x, 1, 0}, {1 + x, 0, 0}, {1 + x, 1, 0}}};

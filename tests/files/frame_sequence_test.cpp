@@ -95,6 +95,15 @@ TEST_F(FrameSequenceTest, NegativeNumbers) {
   EXPECT_EQ(Find({"f_*.obj"}), "f_*.obj: f_-0002.obj and f_-02.obj have the same number");
 }
 
+TEST_F(FrameSequenceTest, NumbersBeyond63Bits) {
+  Make({"f0.obj", "f9223372036854775807.obj"});
+  EXPECT_EQ(Find({"f%d.obj"}, Gaps::kSkip), "f0.obj f9223372036854775807.obj ");
+  Make({"f9223372036854775808.obj"});
+  const std::string message = "f9223372036854775808.obj: its frame number is too large";
+  for (const char* pattern : {"f%d.obj", "f*.obj", "f#.obj"}) EXPECT_EQ(Find({pattern}), message);
+  EXPECT_EQ(Find({"."}), "./" + message);
+}
+
 TEST_F(FrameSequenceTest, Gaps) {
   Make({"f1.obj", "f2.obj", "f4.obj", "f8.obj"});
   EXPECT_EQ(
