@@ -78,32 +78,39 @@ Status PolygonMesh::EndFace() {
 }
 
 std::vector<std::array<std::uint8_t, 4>> RoundColors(const std::vector<std::array<float, 4>>& colors, Losses& losses) {
+  // Whole numbers above 1 are bytes. Others above 1 are brighter than white, which 8 bits cannot hold.
   float largest = 0;
+  bool whole = true;
   for (const auto& c : colors) {
-    if (c[3] >= 0) largest = std::max({largest, c[0], c[1], c[2]});
+    if (c[3] < 0) continue;
+    largest = std::max({largest, c[0], c[1], c[2]});
+    for (int k = 0; k < 3; ++k) whole = whole && c[k] == std::floor(c[k]);
   }
-  const float scale = largest > 1 ? 1.0F : 255.0F;
+  const float scale = largest > 1 && whole ? 1.0F : 255.0F;
   // As far as three decimals may be from a byte.
   constexpr float kTolerance = 0.1276F;
   std::vector<std::array<std::uint8_t, 4>> bytes;
   bytes.reserve(colors.size());
-  std::uint64_t rounded = 0;
+  std::uint64_t rounded = 0, beyond = 0;
   for (const auto& c : colors) {
     if (c[3] < 0) {
       bytes.push_back({255, 255, 255, 255});
       continue;
     }
     const std::array<float, 4> scaled = {c[0] * scale, c[1] * scale, c[2] * scale, c[3] > 1 ? c[3] : c[3] * 255};
-    bool differs = false;
+    bool differs = false, clamped = false;
     std::array<std::uint8_t, 4> byte{};
     for (int k = 0; k < 4; ++k) {
       byte[k] = scaled[k] > 0 ? static_cast<std::uint8_t>(std::lround(std::min(scaled[k], 255.0F))) : 0;
+      clamped |= !(scaled[k] >= -kTolerance && scaled[k] <= 255 + kTolerance);  // or NaN
       differs |= !(std::abs(scaled[k] - static_cast<float>(byte[k])) <= kTolerance);
     }
-    rounded += differs ? 1 : 0;
+    beyond += clamped ? 1 : 0;
+    rounded += differs && !clamped ? 1 : 0;
     bytes.push_back(byte);
   }
   losses.Count("colors finer than 8 bits", rounded);
+  losses.Count("colors beyond black and white", beyond);
   return bytes;
 }
 

@@ -56,8 +56,8 @@ void PolygonMesh::AddPosition(const Vec3d& position, Where where) {
 }
 
 // Rounds the colours of vertices, red, green, blue and alpha, to bytes; `losses` counts those that were finer. They are
-// in 0..1, or in 0..255 if red, green or blue of any vertex is above 1. A negative alpha means that a vertex has no
-// colour; it becomes white.
+// in 0..1, or in 0..255 if red, green or blue of any vertex is above 1 and all of them are whole numbers; what is
+// beyond is clamped and counted, too. A negative alpha means that a vertex has no colour; it becomes white.
 std::vector<std::array<std::uint8_t, 4>> RoundColors(const std::vector<std::array<float, 4>>& colors, Losses& losses);
 
 // Makes `file` of what was parsed: triangulates the faces, or, if `settings.first` has the same faces, takes its

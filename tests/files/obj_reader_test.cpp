@@ -94,6 +94,11 @@ TEST_F(ObjReaderTest, Colors) {
   const MeshFile bytes = ReadFile("a.obj", "v 0 0 0 255 0 7\nv 1 0 0 1 2 3\nv 0 1 0 9 9 9\nf 1 2 3\n");
   EXPECT_EQ(bytes.mesh.colors[1], (std::array<std::uint8_t, 4>{1, 2, 3, 255}));
   EXPECT_EQ(bytes.warnings, Warnings{});
+  // Brighter than white, in numbers that are no bytes.
+  const MeshFile bright = ReadFile("a.obj", "v 0 0 0 0 0 1.7\nv 1 0 0 1 0 1\nv 0 1 0 0.2 -3 0.4\nf 1 2 3\n");
+  EXPECT_EQ(bright.mesh.colors,
+            (std::vector<std::array<std::uint8_t, 4>>{{0, 0, 255, 255}, {255, 0, 255, 255}, {51, 0, 102, 255}}));
+  EXPECT_EQ(bright.warnings, Warnings{"a.obj: colors beyond black and white (2) are not kept"});
 }
 
 TEST_F(ObjReaderTest, PolygonsFollowTheFirstFrame) {
