@@ -2,10 +2,7 @@
 #include "codec/i_frame.h"
 
 #include <algorithm>
-#include <array>
-#include <bit>
 #include <cstddef>
-#include <numeric>
 #include <utility>
 
 #include "codec/patches.h"
@@ -82,19 +79,6 @@ void AddLooseCorners(const std::vector<Triangle>& triangles, const std::vector<T
     for (std::size_t k = 3; k-- > 0;) of_vertex[triangles[j][k]] = corners[j][k];
   }
   for (const Triangle& t : loose_triangles) corners.push_back({of_vertex[t[0]], of_vertex[t[1]], of_vertex[t[2]]});
-}
-
-// Of normals with the same bits one number, for each normal.
-std::vector<std::uint32_t> ClassesByBits(const std::vector<Vec3f>& normals) {
-  using Bits = std::array<std::uint32_t, 3>;
-  const auto bits = [&](std::uint32_t i) { return std::bit_cast<Bits>(normals[i]); };
-  std::vector<std::uint32_t> order(normals.size()), classes(normals.size());
-  std::iota(order.begin(), order.end(), 0u);
-  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return bits(a) < bits(b); });
-  for (std::size_t i = 1; i < order.size(); ++i) {
-    classes[order[i]] = classes[order[i - 1]] + (bits(order[i]) == bits(order[i - 1]) ? 0 : 1);
-  }
-  return classes;
 }
 
 // Brings the normals of Draco's corners, of loose triangles and of loose vertices together (spec.md 5.3). The triangles

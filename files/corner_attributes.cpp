@@ -1,36 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "files/corner_attributes.h"
 
-#include <bit>
 #include <cmath>
 #include <string>
-#include <unordered_map>
 #include <utility>
 
+#include "files/triangulation.h"
 #include "files/uv_table.h"
+#include "geometry/corner_groups.h"
 
 namespace sac {
 namespace {
 
 constexpr std::uint32_t kNone = PolygonMesh::kNone;
 
-// The unit normal of a face (Newell's), zero if it has no area.
+// The unit normal of a face, zero if it has no area.
 Vec3f FaceNormal(const PolygonMesh& parsed, std::size_t face) {
-  const Faces& faces = parsed.faces;
-  const std::uint32_t begin = faces.begin(face);
-  Vec3d sum = {};
-  for (std::uint32_t k = begin + 1; k + 1 < faces.ends[face]; ++k) {
-    Vec3d a = parsed.positions[faces.vertices[k]], b = parsed.positions[faces.vertices[k + 1]];
-    for (int i = 0; i < 3; ++i) {
-      a[i] -= parsed.positions[faces.vertices[begin]][i];
-      b[i] -= parsed.positions[faces.vertices[begin]][i];
-    }
-    for (int i = 0; i < 3; ++i) sum[i] += a[(i + 1) % 3] * b[(i + 2) % 3] - a[(i + 2) % 3] * b[(i + 1) % 3];
-  }
-  const double length = std::sqrt(sum[0] * sum[0] + sum[1] * sum[1] + sum[2] * sum[2]);
+  const Vec3d normal = NewellNormal(parsed.faces, face, parsed.positions);
+  const double length = std::sqrt(normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2]);
   if (!(length > 0) || !std::isfinite(length)) return {};
-  return {static_cast<float>(sum[0] / length), static_cast<float>(sum[1] / length),
-          static_cast<float>(sum[2] / length)};
+  return {static_cast<float>(normal[0] / length), static_cast<float>(normal[1] / length),
+          static_cast<float>(normal[2] / length)};
 }
 
 // Gives faces with a corner that lacks a normal the face's own there.
@@ -54,46 +44,12 @@ void CompleteNormals(PolygonMesh& parsed) {
   }
 }
 
-// Normals of corners, an entry for each vertex and value.
-class NormalTable {
- public:
-  std::uint32_t Index(std::uint32_t vertex, const Vec3f& normal) {
-    Key key = {vertex};
-    // The two zeros are one value.
-    for (int k = 0; k < 3; ++k) key[k + 1] = std::bit_cast<std::uint32_t>(normal[k] == 0 ? 0.0F : normal[k]);
-    const auto [found, added] = index_.try_emplace(key, static_cast<std::uint32_t>(normals_.size()));
-    if (added) normals_.push_back(normal);
-    return found->second;
+// One number for the normals with the same value, for each normal. The two zeros are one value.
+std::vector<std::uint32_t> ClassesByValue(std::vector<Vec3f> normals) {
+  for (Vec3f& normal : normals) {
+    for (float& x : normal) x += 0.0F;
   }
-
-  std::vector<Vec3f> Take() { return std::move(normals_); }
-
- private:
-  using Key = std::array<std::uint32_t, 4>;
-  struct Hash {
-    std::size_t operator()(const Key& key) const {
-      std::uint64_t hash = 0;
-      for (const std::uint32_t x : key) hash = (hash ^ x) * 0x9E3779B97F4A7C15U;
-      return static_cast<std::size_t>(hash ^ hash >> 32);
-    }
-  };
-
-  std::vector<Vec3f> normals_;
-  std::unordered_map<Key, std::uint32_t, Hash> index_;
-};
-
-// One normal per vertex: that of its corners. A vertex without one takes the normal of its own number if there are as
-// many normals as vertices, else none. Of `normals`, only the first `own` are the file's.
-std::vector<Vec3f> VertexNormals(const PolygonMesh& parsed, const std::vector<std::uint32_t>& of_vertex,
-                                 std::size_t own) {
-  std::vector<Vec3f> normals;
-  normals.reserve(of_vertex.size());
-  for (std::size_t v = 0; v < of_vertex.size(); ++v) {
-    const std::uint32_t index =
-        of_vertex[v] == kNone && own == of_vertex.size() ? static_cast<std::uint32_t>(v) : of_vertex[v];
-    normals.push_back(index == kNone ? Vec3f{} : parsed.normals[index]);
-  }
-  return normals;
+  return ClassesByBits(normals);
 }
 
 }  // namespace
@@ -124,31 +80,18 @@ void FinishNormals(PolygonMesh& parsed, const std::vector<Triangle>& corners, Me
     mesh.normals = std::move(parsed.normals);
     return;
   }
-  const std::size_t own = parsed.normals.size();
+  // A vertex without corners takes the normal of its own number if there are as many normals as vertices.
+  std::vector<Vec3f> loose;
+  if (parsed.normals.size() == parsed.positions.size()) loose = parsed.normals;
   CompleteNormals(parsed);
-  std::vector<std::uint32_t> of_vertex(parsed.positions.size(), kNone);
-  bool differ = false;
-  for (std::size_t j = 0; j < corners.size(); ++j) {
-    for (int k = 0; k < 3; ++k) {
-      const std::uint32_t normal = parsed.corner_normals[corners[j][k]];
-      std::uint32_t& known = of_vertex[mesh.triangles[j][k]];
-      if (known == kNone) known = normal;
-      differ |= known != normal && parsed.normals[known] != parsed.normals[normal];
-    }
+  mesh.normal_triangles.reserve(corners.size());
+  for (const Triangle& t : corners) {
+    mesh.normal_triangles.push_back(
+        {parsed.corner_normals[t[0]], parsed.corner_normals[t[1]], parsed.corner_normals[t[2]]});
   }
-  if (!differ) {
-    mesh.normals = VertexNormals(parsed, of_vertex, own);
-    return;
-  }
-  NormalTable table;
-  for (std::size_t j = 0; j < corners.size(); ++j) {
-    Triangle normals{};
-    for (int k = 0; k < 3; ++k) {
-      normals[k] = table.Index(mesh.triangles[j][k], parsed.normals[parsed.corner_normals[corners[j][k]]]);
-    }
-    mesh.normal_triangles.push_back(normals);
-  }
-  mesh.normals = table.Take();
+  mesh.normals = std::move(parsed.normals);
+  MergeNormals(mesh.triangles, parsed.positions.size(), ClassesByValue(mesh.normals), loose, mesh.normals,
+               mesh.normal_triangles);
 }
 
 }  // namespace sac

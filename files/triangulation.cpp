@@ -23,7 +23,7 @@ double Dot(const Vec3d& a, const Vec3d& b) { return a[0] * b[0] + a[1] * b[1] + 
 struct Polygon {
   std::uint32_t begin = 0;
   std::vector<Vec3d> points;
-  Vec3d normal = {};  // Newell's: twice the area long
+  Vec3d normal = {};  // NewellNormal()
   double length = 0;  // of the normal
 
   void Take(const Faces& faces, std::size_t face, const std::vector<Vec3d>& positions) {
@@ -33,11 +33,7 @@ struct Polygon {
       // Relative to the first, so that the digits are those of the face and not of its place.
       points.push_back(Minus(positions[faces.vertices[k]], positions[faces.vertices[begin]]));
     }
-    normal = {};
-    for (std::size_t k = 1; k + 1 < points.size(); ++k) {
-      const Vec3d twice = Cross(points[k], points[k + 1]);
-      for (int i = 0; i < 3; ++i) normal[i] += twice[i];
-    }
+    normal = NewellNormal(faces, face, positions);
     length = std::sqrt(Dot(normal, normal));
   }
 
@@ -119,6 +115,18 @@ class Tessellator {
 };
 
 }  // namespace
+
+Vec3d NewellNormal(const Faces& faces, std::size_t face, const std::vector<Vec3d>& positions) {
+  const std::uint32_t begin = faces.begin(face);
+  const Vec3d& first = positions[faces.vertices[begin]];
+  Vec3d normal = {};
+  for (std::uint32_t k = begin + 1; k + 1 < faces.ends[face]; ++k) {
+    const Vec3d twice =
+        Cross(Minus(positions[faces.vertices[k]], first), Minus(positions[faces.vertices[k + 1]], first));
+    for (int i = 0; i < 3; ++i) normal[i] += twice[i];
+  }
+  return normal;
+}
 
 Triangulation Triangulate(const Faces& faces, const std::vector<Vec3d>& positions) {
   Triangulation result;

@@ -2,6 +2,8 @@
 #include "geometry/corner_groups.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -54,6 +56,18 @@ CornerGroups GroupCorners(const std::vector<Triangle>& vertices, const std::vect
     }
   }
   return groups;
+}
+
+std::vector<std::uint32_t> ClassesByBits(const std::vector<Vec3f>& normals) {
+  using Bits = std::array<std::uint32_t, 3>;
+  const auto bits = [&](std::uint32_t i) { return std::bit_cast<Bits>(normals[i]); };
+  std::vector<std::uint32_t> order(normals.size()), classes(normals.size());
+  std::iota(order.begin(), order.end(), 0u);
+  std::sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) { return bits(a) < bits(b); });
+  for (std::size_t i = 1; i < order.size(); ++i) {
+    classes[order[i]] = classes[order[i - 1]] + (bits(order[i]) == bits(order[i - 1]) ? 0 : 1);
+  }
+  return classes;
 }
 
 void MergeNormals(const std::vector<Triangle>& triangles, std::size_t vertices,

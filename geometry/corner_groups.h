@@ -19,6 +19,9 @@ struct CornerGroups {
 // of each triangle's corners.
 CornerGroups GroupCorners(const std::vector<Triangle>& vertices, const std::vector<Triangle>& classes);
 
+// One number for the normals with the same bits, for each normal.
+std::vector<std::uint32_t> ClassesByBits(const std::vector<Vec3f>& normals);
+
 // Brings normals of corners into the form that a Mesh has them in. Two normals are the same if they are of one class:
 // `classes` has one a normal.
 //
