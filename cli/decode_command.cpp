@@ -179,9 +179,8 @@ Status Decoding::Commit() {
   Warnings warnings = lost_;
   for (std::string& warning : output_->warnings()) warnings.push_back(std::move(warning));
   // Who asks for some of the frames may have others there on purpose.
-  const bool whole = options_.frames.begin == 0 && !options_.frames.end;
-  if (const std::string stale = whole ? output_->StaleFrames() : std::string(); !stale.empty()) {
-    warnings.push_back(options_.output + ": frames " + stale + " are there from before and do not belong to this clip");
+  if (options_.frames.begin == 0 && !options_.frames.end) {
+    for (std::string& warning : output_->StaleFrames()) warnings.push_back(std::move(warning));
   }
   SAC_RETURN_IF_ERROR(TellWarnings(warnings, options_.strict));
   return output_->Commit();

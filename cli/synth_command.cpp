@@ -46,10 +46,7 @@ Status Synthesize(const SynthOptions& options) {
     SAC_RETURN_IF_ERROR(output->Write(f, clip.Frame(f)));
     progress.FramesDone(f + 1);
   }
-  if (const std::string stale = output->StaleFrames(); !stale.empty()) {
-    SAC_RETURN_IF_ERROR(TellWarnings(
-        {options.output + ": frames " + stale + " are there from before and do not belong to this clip"}, false));
-  }
+  SAC_RETURN_IF_ERROR(TellWarnings(output->StaleFrames(), false));
   return output->Commit();
 }
 

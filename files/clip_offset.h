@@ -20,6 +20,12 @@ std::vector<Vec3d> DoublePositions(const MeshFile& file);
 // The positions of a file relative to `offset`, in float32.
 Positions Relative(const MeshFile& file, const Vec3d& offset);
 
+// offset + position, in double.
+inline Vec3d Absolute(const Vec3d& offset, const Vec3f& position) {
+  return {offset[0] + static_cast<double>(position[0]), offset[1] + static_cast<double>(position[1]),
+          offset[2] + static_cast<double>(position[2])};
+}
+
 // Makes positions relative to `offset`.
 void Subtract(const Vec3d& offset, Positions& positions);
 

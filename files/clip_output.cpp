@@ -9,6 +9,7 @@
 #include <sstream>
 #include <utility>
 
+#include "files/clip_offset.h"
 #include "files/mesh_file.h"
 #include "files/overwriting.h"
 
@@ -84,14 +85,14 @@ Status ClipOutput::WriteToCache(std::int64_t number, const Positions& positions)
   if (offset_ == std::array<double, 3>{}) return cache_->Write(positions);
   Positions moved = positions;
   for (std::size_t v = 0; v < moved.size(); ++v) {
+    const Vec3d sum = Absolute(offset_, positions[v]);
     for (std::size_t a = 0; a < 3; ++a) {
-      const double sum = offset_[a] + static_cast<double>(positions[v][a]);
-      moved[v][a] = static_cast<float>(sum);
+      moved[v][a] = static_cast<float>(sum[a]);
       if (!std::isfinite(moved[v][a])) {
         return Status::InvalidArgument(path_ + ": frame " + std::to_string(number) + ": vertex " + std::to_string(v) +
                                        " is beyond the range of the format's 32-bit floats; meshes (.obj) hold it");
       }
-      largest_rounding_ = std::max(largest_rounding_, std::abs(static_cast<double>(moved[v][a]) - sum));
+      largest_rounding_ = std::max(largest_rounding_, std::abs(static_cast<double>(moved[v][a]) - sum[a]));
     }
   }
   return cache_->Write(moved);
@@ -108,13 +109,14 @@ Warnings ClipOutput::warnings() const {
   return warnings;
 }
 
-std::string ClipOutput::StaleFrames() const {
+Warnings ClipOutput::StaleFrames() const {
   std::map<std::int64_t, std::string> files;
   if (!pattern_ || !pattern_->List(files).ok()) return {};
   files.erase(files.begin(), files.upper_bound(last_number_));
   if (files.empty()) return {};
   const std::string first = std::to_string(files.begin()->first);
-  return files.size() == 1 ? first : first + " to " + std::to_string(files.rbegin()->first);
+  const std::string numbers = files.size() == 1 ? first : first + " to " + std::to_string(files.rbegin()->first);
+  return {path_ + ": frames " + numbers + " are there from before and do not belong to this clip"};
 }
 
 Status ClipOutput::Commit() {

@@ -37,9 +37,9 @@ class ClipOutput {
   // True if `path` is, by its name, a clip output.
   static bool IsClipName(const std::string& path);
 
-  // The numbers after the last one written whose files are there from an earlier run, in words; empty if there are
-  // none, and for what is no sequence.
-  std::string StaleFrames() const;
+  // A warning of files of the sequence that have higher numbers than the last one written, from an earlier run; none
+  // where there are none, and for what is no sequence.
+  Warnings StaleFrames() const;
 
   // `mesh` gives triangles and attributes. If it has normals, they are those of its positions.
   static Status Open(const std::string& path, const Mesh& mesh, const Settings& settings,

@@ -6,18 +6,13 @@
 #include <cstddef>
 #include <cstring>
 
+#include "files/clip_offset.h"
 #include "files/text_scan.h"
 
 namespace sac {
 namespace {
 
 static_assert(std::endian::native == std::endian::little, "doubles are written as they are in memory");
-
-std::array<double, 3> Sum(const Vec3f& position, const std::array<double, 3>& offset) {
-  std::array<double, 3> sum;
-  for (std::size_t a = 0; a < 3; ++a) sum[a] = offset[a] + static_cast<double>(position[a]);
-  return sum;
-}
 
 void AppendLine(std::string& text, std::string_view line) { text.append(line).append(1, '\n'); }
 
@@ -28,7 +23,7 @@ std::string MoveOff(std::string_view text, const Positions& positions, const std
   for (int line = 0; line < 2; ++line) AppendLine(moved, TakeLine(text));  // the format, the counts
   for (const Vec3f& position : positions) {
     std::string_view line = TakeLine(text);
-    for (const double x : Sum(position, offset)) {
+    for (const double x : Absolute(offset, position)) {
       char digits[32];
       (void)TakeWord(line);
       moved.append(digits, std::to_chars(digits, digits + sizeof digits, x).ptr).append(1, ' ');
@@ -55,7 +50,7 @@ std::string MovePly(std::string_view bytes, const Positions& positions, const st
     AppendLine(moved, moves ? "property double " + std::string(name) : std::string(line));
   }
   for (const Vec3f& position : positions) {
-    const std::array<double, 3> sum = Sum(position, offset);
+    const Vec3d sum = Absolute(offset, position);
     moved.append(reinterpret_cast<const char*>(sum.data()), sizeof sum).append(bytes.substr(kOld, rest));
     bytes.remove_prefix(kOld + rest);
   }
