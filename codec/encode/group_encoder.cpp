@@ -113,9 +113,10 @@ Status GroupEncoder::EncodeNext(PositionMatrix positions, std::uint32_t index, F
 
 void GroupEncoder::KeepLast(const GroupInProgress& group) {
   last_positions_ = group.frames.back();
-  for (std::size_t i = 0; i < group.structure.size(); ++i) {
-    if (group.structure[i].display + 1 == group.frames.size()) last_ = group.predictor.frames()[i];
-  }
+  // From behind: in a chain it is the last one coded.
+  std::size_t i = group.structure.size() - 1;
+  while (group.structure[i].display + 1 != group.frames.size()) --i;
+  last_ = group.predictor.frames()[i];
 }
 
 Status GroupEncoder::EncodeFrame(GroupInProgress& group, Eigen::MatrixXd motion, FrameSyntax& frame) {
