@@ -42,6 +42,20 @@ inline Eigen::Vector3d RandomVector(std::mt19937& random) {
   return {x, y, z};
 }
 
+// `count` random vectors.
+inline Positions RandomPositions(std::mt19937& random, std::size_t count) {
+  Positions positions(count);
+  for (Vec3f& p : positions) p = ToVec3f(RandomVector(random));
+  return positions;
+}
+
+// Any three of `count` vertices, which may be the same.
+inline Triangle RandomTriangle(std::mt19937& random, std::size_t count) {
+  Triangle t;
+  for (std::uint32_t& v : t) v = static_cast<std::uint32_t>(random() % count);
+  return t;
+}
+
 // Rotates rows about the origin, then moves them.
 inline PositionMatrix Moved(const PositionMatrix& p, const Eigen::Matrix3d& r, const Eigen::Vector3d& t) {
   return (p * r.transpose()).rowwise() + t.transpose();

@@ -102,13 +102,11 @@ TEST(CornerNormals, OfOddMeshes) {
   for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
     Mesh mesh;
-    mesh.positions.resize(3 + random() % 12);
-    for (Vec3f& p : mesh.positions) p = ToVec3f(RandomVector(random));
+    mesh.positions = RandomPositions(random, 3 + random() % 12);
     mesh.normals = {{0, 0, 1}, {0, 0, 1}, {1, 0, 0}, {0, -1, 0}};
     std::set<Triangle> different;
     for (int j = 0; j < 25; ++j) {
-      Triangle t;
-      for (std::uint32_t& v : t) v = static_cast<std::uint32_t>(random() % mesh.positions.size());
+      Triangle t = RandomTriangle(random, mesh.positions.size());
       std::rotate(t.begin(), std::min_element(t.begin(), t.end()), t.end());
       if (different.insert(t).second) mesh.triangles.push_back(t);
     }

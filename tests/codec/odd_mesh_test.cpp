@@ -159,12 +159,9 @@ TEST(OddMesh, RandomTrianglesComeBack) {
   for (int i = 0; i < 60; ++i) {
     SCOPED_TRACE(i);
     Mesh mesh;
-    mesh.positions.resize(2 + random() % 20);
-    for (Vec3f& p : mesh.positions) p = ToVec3f(RandomVector(random));
+    mesh.positions = RandomPositions(random, 2 + random() % 20);
     mesh.triangles.resize(random() % 40);
-    for (Triangle& t : mesh.triangles) {
-      for (std::uint32_t& v : t) v = static_cast<std::uint32_t>(random() % mesh.positions.size());
-    }
+    for (Triangle& t : mesh.triangles) t = RandomTriangle(random, mesh.positions.size());
     Encoded encoded;
     ExpectComplete(mesh, encoded);
   }

@@ -30,22 +30,29 @@ double Area(const Points& p, const Triangle& t) {
          2;
 }
 
+// The areas of all triangles, each of which is on the side `sign` of the plane z = 0.
+double SumOfAreas(const Points& points, const Triangulation& cut, double sign) {
+  double sum = 0;
+  for (const Triangle& t : cut.corners) {
+    EXPECT_GE(sign * Area(points, t), 0);
+    sum += sign * Area(points, t);
+  }
+  return sum;
+}
+
 // Checks that triangles fill a face of the plane z = 0, counter-clockwise: none is flipped, together they have its area
 // and not more, and every edge of the face is one of a triangle.
 void ExpectFilled(const Points& points, double area) {
   const Triangulation cut = Cut(points);
   EXPECT_EQ(cut.overlapping, 0U);
   ASSERT_EQ(cut.corners.size(), points.size() - 2);
-  double sum = 0;
   std::vector<bool> edges(points.size());
   for (const Triangle& t : cut.corners) {
-    EXPECT_GE(Area(points, t), 0);
-    sum += Area(points, t);
     for (int k = 0; k < 3; ++k) {
       if ((t[k] + 1) % points.size() == t[(k + 1) % 3]) edges[t[k]] = true;
     }
   }
-  EXPECT_NEAR(sum, area, 1e-9 * area);
+  EXPECT_NEAR(SumOfAreas(points, cut, 1), area, 1e-9 * area);
   EXPECT_EQ(std::count(edges.begin(), edges.end(), true), static_cast<std::ptrdiff_t>(points.size()));
 }
 
@@ -86,12 +93,7 @@ TEST(TriangulationTest, TheOtherSideIsTheOtherWayRound) {
   Points reversed(kL.rbegin(), kL.rend());
   const Triangulation cut = Cut(reversed);
   EXPECT_EQ(cut.overlapping, 0U);
-  double sum = 0;
-  for (const Triangle& t : cut.corners) {
-    EXPECT_LE(Area(reversed, t), 0);
-    sum += Area(reversed, t);
-  }
-  EXPECT_NEAR(sum, -3, 1e-9);
+  EXPECT_NEAR(SumOfAreas(reversed, cut, -1), 3, 1e-9);
 }
 
 TEST(TriangulationTest, CollinearAndRepeatedCornersFlipNothing) {
@@ -102,12 +104,7 @@ TEST(TriangulationTest, CollinearAndRepeatedCornersFlipNothing) {
                           {1, 1, 0}, {1, 3, 0}, {3, 3, 0}, {3, 1, 0}, {1, 1, 0}};
   const Triangulation cut = Cut(keyhole);
   EXPECT_EQ(cut.overlapping, 0U);
-  double sum = 0;
-  for (const Triangle& t : cut.corners) {
-    EXPECT_GE(Area(keyhole, t), 0);
-    sum += Area(keyhole, t);
-  }
-  EXPECT_NEAR(sum, 12, 1e-9);
+  EXPECT_NEAR(SumOfAreas(keyhole, cut, 1), 12, 1e-9);
   // The same corner twice in a row, as quads that are triangles have it.
   EXPECT_EQ(Cut({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 1, 0}}).overlapping, 0U);
 }
