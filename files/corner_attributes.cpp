@@ -2,6 +2,7 @@
 #include "files/corner_attributes.h"
 
 #include <cmath>
+#include <numeric>
 #include <string>
 #include <utility>
 
@@ -90,8 +91,14 @@ void FinishNormals(PolygonMesh& parsed, const std::vector<Triangle>& corners, Me
         {parsed.corner_normals[t[0]], parsed.corner_normals[t[1]], parsed.corner_normals[t[2]]});
   }
   mesh.normals = std::move(parsed.normals);
-  MergeNormals(mesh.triangles, parsed.positions.size(), ClassesByValue(mesh.normals), loose, mesh.normals,
-               mesh.normal_triangles);
+  const auto merge = [&](const std::vector<std::uint32_t>& classes) {
+    MergeNormals(mesh.triangles, parsed.positions.size(), classes, loose, mesh.normals, mesh.normal_triangles);
+  };
+  // Most files name one normal for all corners of a vertex: then values need not be compared.
+  std::vector<std::uint32_t> indices(mesh.normals.size());
+  std::iota(indices.begin(), indices.end(), 0U);
+  merge(indices);
+  if (!mesh.normal_triangles.empty()) merge(ClassesByValue(mesh.normals));
 }
 
 }  // namespace sac
