@@ -2,16 +2,101 @@
 #include "codec/draco_mesh.h"
 
 #include <draco/compression/config/decoder_options.h>
+#include <draco/compression/mesh/mesh_edgebreaker_decoder.h>
+#include <draco/core/varint_decoding.h>
 
-#include <memory>
+#include <cstddef>
 #include <stdexcept>
 #include <string>
 
-#include "codec/draco_decoder.h"
 #include "format/bytes.h"
 
 namespace sac {
 namespace {
+
+// Draco's own decoder of edgebreaker meshes, stopped before the attributes and before each of them, to look at counts
+// that Draco would believe whatever they are (spec.md 5.1): a few hundred bytes could otherwise keep it busy for many
+// seconds and take gigabytes.
+class GuardedDracoDecoder : public draco::MeshEdgebreakerDecoder {
+ protected:
+  bool CreateAttributesDecoder(std::int32_t index) override;
+  bool DecodeAllAttributes() override;
+
+ private:
+  // Whether every attribute is one of those that an I-frame may have, once and with a decoder of its own. Finds how
+  // each is coded.
+  bool ReadDescriptors();
+  // Whether the attribute whose data come next in the buffer is predicted in a way whose counts Draco checks.
+  bool CheckPrediction(std::uint8_t coding);
+
+  draco::DecoderBuffer descriptors_;  // from there on
+  std::vector<std::uint8_t> codings_;
+};
+
+using Attribute = draco::GeometryAttribute;
+
+bool IsKnown(const draco::PointAttribute& a) {
+  const auto is = [&a](draco::DataType type, int components) {
+    return a.data_type() == type && a.num_components() == components;
+  };
+  switch (a.attribute_type()) {
+    case Attribute::POSITION:
+      return is(draco::DT_INT32, 3);
+    case Attribute::NORMAL:
+      return is(draco::DT_FLOAT32, 3);
+    case Attribute::COLOR:
+      return is(draco::DT_UINT8, 4);
+    case Attribute::TEX_COORD:
+      return is(draco::DT_FLOAT32, 2);
+    case Attribute::GENERIC:
+      return is(draco::DT_UINT32, 1);
+    default:
+      return false;
+  }
+}
+
+bool GuardedDracoDecoder::CreateAttributesDecoder(std::int32_t index) {
+  if (!MeshEdgebreakerDecoder::CreateAttributesDecoder(index)) return false;
+  descriptors_ = *buffer();  // those of all decoders follow once all are there
+  return true;
+}
+
+bool GuardedDracoDecoder::ReadDescriptors() {
+  std::size_t seen[Attribute::NAMED_ATTRIBUTES_COUNT] = {};
+  for (int i = 0; i < point_cloud()->num_attributes(); ++i) {
+    const draco::PointAttribute& attribute = *point_cloud()->attribute(i);
+    if (!IsKnown(attribute) || seen[attribute.attribute_type()]++ > 0) return false;
+  }
+  for (int i = 0; i < num_attributes_decoders(); ++i) {
+    std::uint32_t count = 0, id = 0;
+    std::uint8_t coding = 0;
+    if (!draco::DecodeVarint(&count, &descriptors_) || count != 1) return false;
+    descriptors_.Advance(4);  // type, data type, components, normalized
+    if (!draco::DecodeVarint(&id, &descriptors_) || !descriptors_.Decode(&coding)) return false;
+    codings_.push_back(coding);
+  }
+  return true;
+}
+
+bool GuardedDracoDecoder::CheckPrediction(std::uint8_t coding) {
+  if (coding == draco::SEQUENTIAL_ATTRIBUTE_ENCODER_GENERIC) return true;  // values as they are
+  draco::DecoderBuffer ahead = *buffer();
+  std::int8_t method = 0;
+  // Both count orientations: up to 2^31, for which Draco allocates, and loops.
+  return ahead.Decode(&method) && method != draco::MESH_PREDICTION_TEX_COORDS_DEPRECATED &&
+         method != draco::MESH_PREDICTION_TEX_COORDS_PORTABLE;
+}
+
+bool GuardedDracoDecoder::DecodeAllAttributes() {
+  if (!ReadDescriptors()) return false;
+  for (int i = 0; i < num_attributes_decoders(); ++i) {
+    // It is this decoder's own; only the accessor is const.
+    auto& decoder = const_cast<draco::AttributesDecoderInterface&>(*attributes_decoder(i));
+    if (!CheckPrediction(codings_[static_cast<std::size_t>(i)])) return false;
+    if (!decoder.DecodeAttributes(buffer())) return false;
+  }
+  return true;
+}
 
 // The fields before Draco's own data, whose sizes Draco trusts (Draco bitstream specification, sections 4 and 6).
 Status CheckDracoHeader(std::span<const std::uint8_t> bytes, const SequenceHeader& header, bool with_ids) {

@@ -6,7 +6,6 @@
 #include <span>
 #include <vector>
 
-#include "codec/shape.h"
 #include "format/sequence_header.h"
 #include "sac/mesh.h"
 #include "sac/status.h"

@@ -1,30 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "codec/harmonics.h"
 
-#include <Spectra/SymEigsShiftSolver.h>
-
-#include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
-#include <stdexcept>
 #include <string>
 #include <utility>
 
-#include "codec/radial_functions.h"
+#include "codec/eigenpairs.h"
+#include "geometry/laplacian.h"
 #include "geometry/sparse_cholesky.h"
 
 namespace sac {
 namespace {
 
 constexpr double kInhomogeneity = 0.1;
-constexpr Eigen::Index kDenseSize = 96;    // up to this size, a dense solver for all eigenpairs is as quick as Lanczos
-constexpr int kSpareVectors = 20;          // Lanczos vectors beside two for each wanted eigenpair
-constexpr double kFunctionsMemory = 1000;  // bytes per vertex for the radial functions that reach it on a surface
-constexpr double kFunctionMemory = 90;     // bytes for each value of a radial function
-// Surfaces take 1 or 2 restarts. Shapes that are nearly a long path have almost equal eigenvalues and take hundreds.
-constexpr int kUsualRestarts = 5, kMaxRestarts = 60;
+constexpr double kVertexWork = 6000, kVertexMemory = 350;  // of the blend's matrices on a surface, a vertex
+constexpr double kHandleMemory = 25'000;                   // of the same, a handle
 
 // A fixed generic cubic polynomial of coordinates scaled to [0, 1], with values in [-1, 1] (spec.md 6.4.2).
 double GenericCubic(const Eigen::Array3d& p) {
@@ -33,201 +27,100 @@ double GenericCubic(const Eigen::Array3d& p) {
          0.07 * y * y * z + 0.05 * z * z * x + 0.21 * x * x - 0.15 * z * z + 0.09 * y * y * y;
 }
 
-// A fixed generic number in [-1, 1) for each index (spec.md 6.4.3).
-double Generic(std::uint32_t i) { return static_cast<double>((i + 1) * 2654435761u) / 2147483648.0 - 1.0; }
-
-struct EigenPairs {
-  Eigen::VectorXd values;   // ascending
-  Eigen::MatrixXd vectors;  // one column each, orthonormal
-};
-
-bool Factorize(SparseCholesky& solver, const Eigen::SparseMatrix<double>& matrix) {
-  return solver.Analyze(matrix) && solver.Factorize(matrix);
-}
-bool Factorize(Eigen::LLT<Eigen::MatrixXd>& solver, const Eigen::MatrixXd& matrix) {
-  solver.compute(matrix);
-  return solver.info() == Eigen::Success;
+// The generic numbers of the vertices of a component, those of `factor` times the vertex, which counts from 0.
+Eigen::VectorXd GenericOfVertices(std::uint32_t count, std::uint32_t factor) {
+  Eigen::VectorXd numbers(count);
+  for (std::uint32_t v = 0; v < count; ++v) numbers[v] = Generic(factor * v);
+  return numbers;
 }
 
-// The operation x -> (A - sigma I)^-1 x in the form that Spectra asks for. `Solver` is a Cholesky solver for matrices
-// of the type of A.
-template <class Matrix, class Solver>
-class ShiftSolve {
- public:
-  using Scalar = double;
-  explicit ShiftSolve(const Matrix& lower) : matrix_(lower) {}
-  Eigen::Index rows() const { return matrix_.rows(); }
-  Eigen::Index cols() const { return matrix_.cols(); }
-  void set_shift(double sigma) {
-    Matrix shifted;
-    shifted = matrix_;  // Eigen's copy constructor would lose memory when there is too little
-    for (Eigen::Index i = 0; i < rows(); ++i) shifted.coeffRef(i, i) -= sigma;
-    ok_ = Factorize(solver_, shifted);
-  }
-  void perform_op(const double* in, double* out) const {
-    Eigen::Map<Eigen::VectorXd>(out, rows()) = solver_.solve(Eigen::Map<const Eigen::VectorXd>(in, rows()));
-  }
-  bool ok() const { return ok_; }
-
- private:
-  const Matrix& matrix_;
-  Solver solver_;
-  bool ok_ = false;
-};
-using SparseShiftSolve = ShiftSolve<Eigen::SparseMatrix<double>, SparseCholesky>;
-using DenseShiftSolve = ShiftSolve<Eigen::MatrixXd, Eigen::LLT<Eigen::MatrixXd>>;
-
-// Computes the `count` smallest eigenpairs of a symmetric, positive semidefinite matrix given by its lower triangle.
-// Returns false when they do not converge.
-template <class Operation, class Matrix>
-bool SmallestEigenpairs(const Matrix& lower, std::uint32_t count, EigenPairs& out) {
-  const Eigen::Index n = lower.rows(), wanted = count, basis = std::min<Eigen::Index>(2 * wanted + kSpareVectors, n);
-  if (n <= kDenseSize || basis == n) {
-    const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> solver{Eigen::MatrixXd(lower)};
-    if (solver.info() != Eigen::Success) return false;
-    out = {solver.eigenvalues().head(wanted), solver.eigenvectors().leftCols(wanted)};
-    return true;
-  }
-  // Masses sum to 1 over the mesh, so the eigenvalues of a surface are about 4 pi apart (Weyl's law), and a shift of -1
-  // is small beside that.
-  Operation operation(lower);
-  Spectra::SymEigsShiftSolver<Operation> solver(operation, wanted, basis, -1.0);
-  if (!operation.ok()) return false;
-  Eigen::VectorXd start(n);
-  for (Eigen::Index i = 0; i < n; ++i) start[i] = Generic(static_cast<std::uint32_t>(i));
-  solver.init(start.data());
-  try {
-    solver.compute(Spectra::SortRule::LargestMagn, kMaxRestarts, 1e-13, Spectra::SortRule::SmallestAlge);
-  } catch (const std::runtime_error&) {  // Spectra throws it when one of its small eigenproblems does not converge
-    return false;
-  }
-  if (solver.info() != Spectra::CompInfo::Successful) return false;
-  out = {solver.eigenvalues(), solver.eigenvectors()};
-  return true;
-}
-
-// Computes the smallest eigenpairs of L h = lambda D h. With h = D^-1/2 y they are those of D^-1/2 L D^-1/2.
+// Computes the smallest eigenpairs of L h = lambda D h, L given by its lower triangle. With h = D^-1/2 y they are those
+// of D^-1/2 L D^-1/2.
 bool ExactHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, std::uint32_t count,
                     EigenPairs& out) {
   const Eigen::VectorXd scale = mass.cwiseSqrt().cwiseInverse();
   Eigen::SparseMatrix<double> scaled;
   scaled = scale.asDiagonal() * laplacian * scale.asDiagonal();
-  if (!SmallestEigenpairs<SparseShiftSolve>(scaled, count, out)) return false;
+  if (!SmallestEigenpairs(scaled, count, out)) return false;
   out.vectors = scale.asDiagonal() * out.vectors;
   return true;
 }
 
-// Takes one step of inverse iteration, Y = (L + D)^-1 D H, and computes the Ritz vectors of the span of Y. The step
-// separates parts of the surface that are near in space but far along the surface, which radial functions mix.
-bool Refine(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, RowMatrix functions,
-            EigenPairs& out) {
-  Eigen::SparseMatrix<double> shifted;
-  shifted = laplacian;
-  for (Eigen::Index i = 0; i < shifted.rows(); ++i) shifted.coeffRef(i, i) += mass[i];
-  SparseCholesky solver;
-  if (!Factorize(solver, shifted)) return false;
-  RowMatrix& weighted = functions;  // reuses the memory, since this is one of the largest matrices
-  weighted.array().colwise() *= mass.array();
-  RowMatrix image = weighted;
+// Replaces the columns of `image` by the `count` Ritz vectors with the smallest eigenvalues in the span of
+// Y = (S + G)^-1 G Z, Z those columns: a step of inverse iteration. `solver` has the factors of S + G, `gram` is G.
+bool Iterate(const SparseCholesky& solver, const Eigen::SparseMatrix<double>& gram, std::uint32_t count,
+             RowMatrix& image, Eigen::VectorXd& values) {
+  const RowMatrix weighted = gram * image;
+  image = weighted;
   solver.SolveInPlace(image);
-  // With (L + D) Y = D H, Y^T L Y = Y^T D H - Y^T D Y: symmetric, so their lower triangles are enough.
-  Eigen::MatrixXd stiffness(image.cols(), image.cols()), gram(image.cols(), image.cols());
+  // With (S + G) Y = G Z, Y^T S Y = Y^T G Z - Y^T G Y: symmetric, so their lower triangles are enough.
+  Eigen::MatrixXd stiffness(image.cols(), image.cols()), mass(image.cols(), image.cols());
   stiffness.triangularView<Eigen::Lower>() = image.transpose() * weighted;
-  weighted = mass.asDiagonal() * image;
-  gram.triangularView<Eigen::Lower>() = image.transpose() * weighted;
-  stiffness.triangularView<Eigen::Lower>() -= gram;
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(stiffness, gram);
+  const RowMatrix weighted_image = gram * image;
+  mass.triangularView<Eigen::Lower>() = image.transpose() * weighted_image;
+  stiffness.triangularView<Eigen::Lower>() -= mass;
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ritz(stiffness, mass);
   if (ritz.info() != Eigen::Success) return false;
-  weighted.resize(0, 0);
-  out = {ritz.eigenvalues(), image * ritz.eigenvectors()};
+  // Swapped in, because Eigen's assignment to a matrix of another size would free it twice when there is too little
+  // memory.
+  Eigen::VectorXd smallest = ritz.eigenvalues().head(count);
+  RowMatrix vectors = image * ritz.eigenvectors().leftCols(count);
+  values.swap(smallest);
+  image.swap(vectors);
   return true;
 }
 
-// Solves the same problem within the span of the columns of S = `functions` (Rayleigh-Ritz): S^T L S y = lambda S^T D S
-// y, h = S y.
-bool ReducedHarmonics(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass,
-                      const Eigen::SparseMatrix<double>& functions, std::uint32_t count, EigenPairs& out) {
-  // Assigned, not constructed: Eigen's constructors lose memory when there is too little.
-  Eigen::SparseMatrix<double> full, image, weighted;
-  full = laplacian.selfadjointView<Eigen::Lower>();
-  image = full * functions;
-  const Eigen::MatrixXd stiffness = functions.transpose() * image;
-  weighted = mass.asDiagonal() * functions;
-  const Eigen::LLT<Eigen::MatrixXd> gram(Eigen::MatrixXd(functions.transpose() * weighted));
-  if (gram.info() != Eigen::Success) return false;
-  Eigen::MatrixXd standard = gram.matrixL().solve(stiffness).transpose();
-  standard = gram.matrixL().solve(standard).eval();
-  standard = (standard + standard.transpose()).eval() / 2;
-  if (!SmallestEigenpairs<DenseShiftSolve>(standard, count, out)) return false;
-  Eigen::SparseMatrix<double, Eigen::RowMajor> rows;
-  rows = functions;
-  const RowMatrix mixed = gram.matrixU().solve(out.vectors);
-  return Refine(laplacian, mass, rows * mixed, out);
+// Computes the harmonics of a blend. It begins with functions that are 1 around each leader; the steps make them smooth
+// and bring in the functions that turn and stretch. `leaders` are those of the component's handles.
+bool BlendHarmonics(const Eigen::SparseMatrix<double>& stiffness, const Eigen::SparseMatrix<double>& gram,
+                    std::span<const std::uint32_t> leaders, std::uint32_t count, EigenPairs& out) {
+  const std::uint32_t first = leaders.front();
+  RowMatrix image = RowMatrix::Zero(gram.rows(), LeaderCount(static_cast<std::uint32_t>(leaders.size()), count));
+  for (std::size_t h = 0; h < leaders.size(); ++h) image(4 * static_cast<Eigen::Index>(h) + 3, leaders[h] - first) = 1;
+  Eigen::SparseMatrix<double> shifted;
+  shifted = stiffness + gram;
+  SparseCholesky solver;
+  if (!solver.Analyze(shifted) || !solver.Factorize(shifted)) return false;
+  Eigen::SparseMatrix<double> whole;
+  whole = gram.selfadjointView<Eigen::Lower>();
+  for (int step = 0; step < 2; ++step) {
+    if (!Iterate(solver, whole, count, image, out.values)) return false;
+  }
+  Eigen::MatrixXd vectors = image;
+  out.vectors.swap(vectors);
+  return true;
 }
 
-// The Laplacian of a component with unevenly scaled weights (spec.md 6.4.2), which splits the multiple eigenvalues of
-// symmetric shapes.
-Eigen::SparseMatrix<double> UnevenLaplacian(const LaplaceProblem& problem, const Component& c) {
-  Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::max()), high = -low;
-  const auto point = [](const GridPosition& g) { return Eigen::Array3d(g[0], g[1], g[2]); };
-  for (const GridPosition& g : problem.grid.subspan(c.first, c.count)) {
-    low = low.min(point(g));
-    high = high.max(point(g));
-  }
-  const double extent = std::max(1.0, (high - low).maxCoeff());
-  const EdgeRange range = EdgesOf(problem.edges, c.first, c.count);
-  const auto ends = std::span(problem.edges.ends).subspan(range.begin, range.count);
-  std::vector<double> uneven(ends.size());
-  for (std::size_t e = 0; e < ends.size(); ++e) {
-    const Eigen::Array3d middle = (point(problem.grid[ends[e][0]]) + point(problem.grid[ends[e][1]])) / 2;
-    uneven[e] = problem.weights[range.begin + e] * (1 + kInhomogeneity * GenericCubic((middle - low) / extent));
-  }
-  return LaplacianMatrix(ends, uneven, c.first, c.count);
-}
-
-// Scales each harmonic to a mean square of 1 and gives it the sign of spec.md 6.4.3. The first harmonic is set to 1,
-// its exact value.
-void Normalize(const Eigen::VectorXd& mass, ComponentHarmonics& harmonics) {
+// Scales each harmonic to a mean square of 1 and gives it the sign of spec.md 6.4.3. `constant` has the coefficients of
+// the constant 1, which the first harmonic is set to, and `signs` of each function the sum over vertices v of G(v)
+// times its value. `squares` has the mean square of each harmonic but the first.
+void Normalize(const Eigen::VectorXd& constant, const Eigen::VectorXd& signs, const Eigen::VectorXd& squares,
+               ComponentHarmonics& harmonics) {
+  harmonics.eigenvalues = harmonics.eigenvalues.cwiseMax(0);
   harmonics.eigenvalues[0] = 0;
-  harmonics.vectors.col(0).setOnes();
-  for (Eigen::Index k = 0; k < harmonics.vectors.cols(); ++k) {
+  harmonics.vectors.col(0) = constant;
+  for (Eigen::Index k = 1; k < harmonics.vectors.cols(); ++k) {
     auto h = harmonics.vectors.col(k);
-    double sign = 0;
-    for (Eigen::Index v = 0; v < h.rows(); ++v) sign += Generic(static_cast<std::uint32_t>(v)) * h[v];
-    const double mean_square = h.cwiseAbs2().dot(mass) / mass.sum();
-    h *= (k > 0 && sign < 0 ? -1.0 : 1.0) / std::sqrt(mean_square);
+    h *= (signs.dot(h) < 0 ? -1.0 : 1.0) / std::sqrt(squares[k]);
   }
 }
 
-Status ComputeComponent(const LaplaceProblem& problem, std::uint32_t count, const Spare& spare,
-                        ComponentHarmonics& out) {
-  const Component& c = out.component;
-  const Eigen::SparseMatrix<double> laplacian = UnevenLaplacian(problem, c);
-  const Eigen::VectorXd mass = problem.masses.segment(c.first, c.count);
-
-  const std::uint64_t samples = static_cast<std::uint64_t>(problem.samples_per_harmonic) * count;
-  Eigen::SparseMatrix<double> functions;
-  if (count > 1 && samples > 0 && samples < c.count) {
-    // A vertex that k functions reach contributes to k^2 products of functions, so the work bounds the square.
-    const double max_values =
-        std::min((kFunctionsMemory * c.count + spare.memory) / kFunctionMemory,
-                 std::sqrt((HarmonicsWork(c.count, count, static_cast<double>(samples)) + spare.work) * c.count));
-    if (!RadialFunctions(problem.grid.subspan(c.first, c.count), static_cast<std::uint32_t>(samples), max_values,
-                         functions)) {
-      return Status::Limit("the harmonic basis takes more work or memory than the limit");
-    }
-  }
-  EigenPairs pairs;
-  if (count == 1) {
-    pairs = {Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Ones(c.count, 1)};
-  } else if (!(functions.cols() > 0 ? ReducedHarmonics(laplacian, mass, functions, count, pairs)
-                                    : ExactHarmonics(laplacian, mass, count, pairs))) {
-    return Status::Corrupt("harmonics do not converge");
-  }
-  out.eigenvalues = pairs.values.cwiseMax(0);
+// The harmonics of a component whose functions are its vertices' own.
+bool HarmonicsOfVertices(const Eigen::SparseMatrix<double>& laplacian, const Eigen::VectorXd& mass, std::uint32_t count,
+                         ComponentHarmonics& out) {
+  EigenPairs pairs = {Eigen::VectorXd::Zero(1), Eigen::MatrixXd::Ones(mass.size(), 1)};
+  if (count > 1 && !ExactHarmonics(laplacian, mass, count, pairs)) return false;
+  const Eigen::VectorXd squares = (pairs.vectors.cwiseAbs2().transpose() * mass / mass.sum()).eval();
+  out.eigenvalues = std::move(pairs.values);
   out.vectors = std::move(pairs.vectors);
-  Normalize(mass, out);
-  return Status::Ok();
+  const auto vertices = static_cast<std::uint32_t>(mass.size());
+  Normalize(Eigen::VectorXd::Ones(mass.size()), GenericOfVertices(vertices, 1), squares, out);
+  out.generic = GenericOfVertices(vertices, 7);
+  return true;
+}
+
+Status DoNotConverge(std::size_t component) {
+  return Status::Corrupt("component " + std::to_string(component) + ": harmonics do not converge");
 }
 
 // The share of `basis` in the generic bilinear form (spec.md 6.6). Constant functions, k = 0, do not enter it.
@@ -235,10 +128,7 @@ double GenericForm(const HarmonicBasis& basis) {
   double form = 0;
   for (const ComponentHarmonics& c : basis.components) {
     for (Eigen::Index k = 1; k < c.vectors.cols(); ++k) {
-      double column = 0;
-      for (Eigen::Index v = 0; v < c.vectors.rows(); ++v)
-        column += Generic(static_cast<std::uint32_t>(7 * v)) * c.vectors(v, k);
-      form += Generic(static_cast<std::uint32_t>(3 * k)) * column / static_cast<double>(c.vectors.rows());
+      form += Generic(static_cast<std::uint32_t>(3 * k)) * c.generic.dot(c.vectors.col(k)) / c.component.count;
     }
   }
   return form;
@@ -257,49 +147,98 @@ bool SameFingerprint(const std::array<float, 2>& a, const std::array<float, 2>& 
          std::abs(a[1] - b[1]) <= 1e-5f * std::abs(a[1]) + 1e-5f;
 }
 
-namespace {
-
-// The eigenproblem that ComputeComponent solves for a component.
-struct Eigenproblem {
-  Eigenproblem(double vertices, double harmonics, double samples)
-      : reduced(samples > 0 && samples < vertices),
-        size(reduced ? samples : vertices),
-        basis(std::min(2 * harmonics + kSpareVectors, size)),
-        dense(size <= kDenseSize || basis == size) {}
-  bool reduced;
-  double size;
-  double basis;  // number of Lanczos vectors
-  bool dense;    // whether a dense solver computes all eigenpairs at once
-};
-
-}  // namespace
-
-double HarmonicsWork(double vertices, double harmonics, double samples) {
-  if (harmonics == 1) return vertices;
-  const Eigenproblem problem(vertices, harmonics, samples);
-  const double n = problem.size, basis = problem.basis;
-  const double products = problem.reduced ? 10 * vertices * (harmonics * harmonics + samples) : 0;
-  if (problem.dense) return products + 10 * n * n * n;
-  return products + kUsualRestarts * basis * n * (problem.reduced ? basis + n : basis);
+std::vector<double> Unevenness(const EdgeList& edges, std::span<const GridPosition> grid,
+                               std::span<const Component> runs) {
+  std::vector<double> uneven(edges.ends.size(), 1.0);
+  const auto point = [&](std::uint32_t v) { return Eigen::Array3d(grid[v][0], grid[v][1], grid[v][2]); };
+  for (const Component& c : runs) {
+    Eigen::Array3d low = Eigen::Array3d::Constant(std::numeric_limits<double>::max()), high = -low;
+    for (std::uint32_t v = c.first; v < c.first + c.count; ++v) {
+      low = low.min(point(v));
+      high = high.max(point(v));
+    }
+    const double extent = std::max(1.0, (high - low).maxCoeff());
+    const EdgeRange range = EdgesOf(edges, c.first, c.count);
+    for (std::size_t e = range.begin; e < range.begin + range.count; ++e) {
+      if (edges.ends[e][1] >= c.first + c.count) continue;
+      const Eigen::Array3d middle = (point(edges.ends[e][0]) + point(edges.ends[e][1])) / 2;
+      uneven[e] = 1 + kInhomogeneity * GenericCubic((middle - low) / extent);
+    }
+  }
+  return uneven;
 }
 
-double HarmonicsMemory(double vertices, double harmonics, double samples) {
+double HarmonicsWork(double vertices, double harmonics, double handles) {
+  if (handles == vertices) return harmonics == 1 ? vertices : EigenpairsWork(vertices, harmonics);
+  const double leaders = 4 * harmonics / 3;
+  return kVertexWork * vertices + 4 * handles * leaders * (6 * leaders + handles) + 15 * leaders * leaders * leaders;
+}
+
+double HarmonicsMemory(double vertices, double harmonics, double handles) {
   constexpr double kValue = sizeof(double);
-  if (harmonics == 1) return kValue * vertices;
-  const Eigenproblem problem(vertices, harmonics, samples);
-  const double n = problem.size, kept = kValue * vertices * harmonics;
-  const double vectors = kValue * (n <= kDenseSize ? 4 * n * n : n * problem.basis);
-  return problem.reduced ? 4 * kept + kFunctionsMemory * vertices + vectors + 6 * kValue * n * n : 2 * kept + vectors;
+  if (handles == vertices) {
+    const double kept = kValue * vertices * harmonics;
+    return harmonics == 1 ? kept : 2 * kept + EigenpairsMemory(vertices, harmonics);
+  }
+  return kVertexMemory * vertices + kHandleMemory * handles + kValue * harmonics * (25 * handles + 10 * harmonics);
 }
 
-Status ComputeHarmonics(const LaplaceProblem& problem, const Spare& spare, HarmonicBasis& basis) {
+Status ComputeHarmonics(const LaplaceProblem& problem, HarmonicBasis& basis) {
   basis.components.clear();
   basis.order = HarmonicOrder(problem.counts);
   for (std::size_t i = 0; i < problem.components.size(); ++i) {
-    ComponentHarmonics& c = basis.components.emplace_back();
-    c.component = problem.components[i];
-    const Status status = ComputeComponent(problem, problem.counts[i], spare, c);
-    if (!status.ok()) return {status.code(), "component " + std::to_string(i) + ": " + status.message()};
+    const Component& c = problem.components[i];
+    ComponentHarmonics& out = basis.components.emplace_back();
+    out.component = out.functions = c;
+    const EdgeRange range = EdgesOf(problem.edges, c.first, c.count);
+    const Eigen::SparseMatrix<double> laplacian =
+        LaplacianMatrix(std::span(problem.edges.ends).subspan(range.begin, range.count),
+                        problem.weights.subspan(range.begin, range.count), c.first, c.count);
+    if (!HarmonicsOfVertices(laplacian, problem.masses.segment(c.first, c.count), problem.counts[i], out)) {
+      return DoNotConverge(i);
+    }
+  }
+  return Status::Ok();
+}
+
+Status ComputeBlendHarmonics(const Blend& blend, const BlendSystem& system, const EdgeGraph& graph,
+                             std::span<const Component> components, const Eigen::VectorXd& masses,
+                             std::span<const std::uint32_t> counts, HarmonicBasis& basis) {
+  basis.components.clear();
+  basis.order = HarmonicOrder(counts);
+  Eigen::MatrixXd generic(masses.size(), 2);
+  for (const Component& c : components) {
+    generic.block(c.first, 0, c.count, 1) = GenericOfVertices(c.count, 1);
+    generic.block(c.first, 1, c.count, 1) = GenericOfVertices(c.count, 7);
+  }
+  generic = blend.TransposeTimes(generic);
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    const Component &c = components[i], &functions = blend.functions()[i];
+    ComponentHarmonics& out = basis.components.emplace_back();
+    out.component = c;
+    out.functions = functions;
+    const Eigen::VectorXd mass = masses.segment(c.first, c.count);
+    if (!blend.IsAffine(i)) {
+      const Eigen::SparseMatrix<double> laplacian = counts[i] > 1 ? system.Stiffness(i) : Eigen::SparseMatrix<double>();
+      if (!HarmonicsOfVertices(laplacian, mass, counts[i], out)) return DoNotConverge(i);
+      continue;
+    }
+    EigenPairs pairs = {Eigen::VectorXd::Zero(1), Eigen::MatrixXd(functions.count, 1)};
+    Eigen::VectorXd squares;
+    if (counts[i] > 1) {
+      const Eigen::SparseMatrix<double> gram = blend.Congruence(i, graph, {masses, {}});
+      const Component& run = blend.handles().components[i];
+      const auto leaders = std::span(blend.handles().leaders).subspan(run.first, run.count);
+      if (!BlendHarmonics(system.Stiffness(i), gram, leaders, counts[i], pairs)) return DoNotConverge(i);
+      const Eigen::MatrixXd weighted = gram.selfadjointView<Eigen::Lower>() * pairs.vectors;
+      squares = pairs.vectors.cwiseProduct(weighted).colwise().sum().transpose() / mass.sum();
+    }
+    out.eigenvalues = std::move(pairs.values);
+    out.vectors = std::move(pairs.vectors);
+    Eigen::VectorXd constant = Eigen::VectorXd::Zero(functions.count);
+    for (Eigen::Index t = 3; t < constant.size(); t += 4) constant[t] = 1;
+    Normalize(constant, generic.block(functions.first, 0, functions.count, 1), squares, out);
+    out.generic = generic.block(functions.first, 1, functions.count, 1);
   }
   return Status::Ok();
 }

@@ -7,6 +7,7 @@
 
 #include "codec/patches.h"
 #include "codec/position_coder.h"
+#include "format/recorded_bins.h"
 #include "geometry/corner_groups.h"
 
 namespace sac {
@@ -64,11 +65,16 @@ Status JoinEntries(const IFrameSyntax& syntax, const SequenceHeader& header, Ass
   return Status::Ok();
 }
 
-// Decodes the positions of the vertices that entries are joined to (spec.md 5.5).
-Status ReadPositions(const IFrameSyntax& syntax, const SequenceHeader& header, Assembly& out) {
-  if (syntax.mesh.empty()) return Status::Ok();
-  return DecodePositions(syntax.positions, PositionGraph(out.vertices, out.triangles),
-                         {syntax.position_step, syntax.position_slope}, header.position_bits, out.grid);
+// Decodes the positions of the vertices that entries are joined to (spec.md 5.5). Their bins are recorded in `bins`
+// unless it is null.
+Status ReadPositions(const IFrameSyntax& syntax, const SequenceHeader& header, RangeDecoder& positions, Assembly& out,
+                     RecordedBins* bins = nullptr) {
+  if (!syntax.mesh.empty()) {
+    SAC_RETURN_IF_ERROR(DecodePositions(positions, PositionGraph(out.vertices, out.triangles),
+                                        {syntax.position_step, syntax.position_slope}, header.position_bits, out.grid,
+                                        bins));
+  }
+  return positions.AtEnd() ? Status::Ok() : Status::Corrupt("I-frame: wrong length");
 }
 
 // Adds to `corners` those of the loose triangles: each takes the value of the first corner that its vertex has in
@@ -154,12 +160,13 @@ std::vector<std::uint32_t> Renumber(std::uint32_t patch_size, Assembly& parts, D
 
 }  // namespace
 
-Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco, DecodedIFrame& out) {
+Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco,
+                      RangeDecoder& positions, DecodedIFrame& out) {
   Assembly parts;
   parts.draco = std::move(draco);
   SAC_RETURN_IF_ERROR(CheckAttributes(syntax, parts.draco));
   SAC_RETURN_IF_ERROR(JoinEntries(syntax, header, parts));
-  SAC_RETURN_IF_ERROR(ReadPositions(syntax, header, parts));
+  SAC_RETURN_IF_ERROR(ReadPositions(syntax, header, positions, parts));
   SAC_RETURN_IF_ERROR(AddLooseParts(syntax, header, parts));
   std::vector<std::uint32_t> renumbered = Renumber(header.patch_size, parts, out.mesh);
   out.normals = std::move(parts.draco.normals);
@@ -170,6 +177,23 @@ Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, 
   out.uv_triangles = std::move(parts.draco.uv_triangles);
   out.vertex_of_entry = std::move(parts.vertex);
   return Status::Ok();
+}
+
+Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco, DecodedIFrame& out) {
+  RangeEncoder coder;
+  syntax.positions.WriteTo(coder);
+  const std::vector<std::uint8_t> bytes = coder.Finish();
+  RangeDecoder positions(bytes);
+  return AssembleIFrame(syntax, header, std::move(draco), positions, out);
+}
+
+Status ReadIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& header, IFrameSyntax& syntax) {
+  RangeDecoder positions({});
+  SAC_RETURN_IF_ERROR(ParseIFrame(payload, header, syntax, positions));
+  Assembly parts;
+  SAC_RETURN_IF_ERROR(DecodeDraco(syntax.mesh, header, parts.draco));
+  SAC_RETURN_IF_ERROR(JoinEntries(syntax, header, parts));
+  return ReadPositions(syntax, header, positions, parts, &syntax.positions);
 }
 
 }  // namespace sac

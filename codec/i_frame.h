@@ -8,6 +8,7 @@
 #include "codec/draco_mesh.h"
 #include "codec/shape.h"
 #include "format/i_frame_syntax.h"
+#include "format/range_coder.h"
 #include "format/sequence_header.h"
 #include "sac/mesh.h"
 #include "sac/status.h"
@@ -26,7 +27,14 @@ struct DecodedIFrame {
   std::vector<std::uint32_t> vertex_of_entry;  // Draco's entries, then the loose vertices
 };
 
-// Joins Draco's mesh with what Draco could not code. kCorrupt when the counts do not add up to the header's.
+// Joins Draco's mesh with what Draco could not code, and decodes the positions, with which the range code ends
+// (ParseIFrame). Returns kCorrupt when it does not, or when the counts do not add up to the header's.
+Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco,
+                      RangeDecoder& positions, DecodedIFrame& out);
+// The same of an I-frame that is yet to be written: the positions are those of `syntax`.
 Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco, DecodedIFrame& out);
+
+// Parses an I-frame with its positions, so that WriteIFrame() can write it again.
+Status ReadIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& header, IFrameSyntax& syntax);
 
 }  // namespace sac

@@ -19,7 +19,7 @@ constexpr std::int32_t kWeight = 65536 / 4;
 
 template <class Coder>
 PositionCoder<Coder>::PositionCoder() {
-  const Mixer<kInputs> mixer({kWeight, kWeight, kWeight, kWeight, 0});
+  const Mixer<kInputs> mixer({kWeight, kWeight, kWeight, 0});
   by_kind_.assign(kKinds, mixer);
   by_kind_and_axis_.assign(kKinds * 3, mixer);
 }
@@ -28,11 +28,11 @@ template <class Coder>
 void PositionCoder<Coder>::CodeBin(Coder& coder, const Contexts& contexts, std::size_t axis, std::size_t bin,
                                    bool& value) {
   const std::size_t kind = std::min(bin, kKinds - 1);
-  std::array<AdaptiveBit*, kStates> states;
-  for (std::size_t i = 0; i < kStates; ++i) states[i] = &(*contexts[i])[bin];
+  std::array<BitModel*, kContexts> models;
+  for (std::size_t i = 0; i < kContexts; ++i) models[i] = &(*contexts[i])[bin];
   std::array<std::int32_t, kInputs> inputs;
-  inputs[kStates] = 256;
-  CodeMixed(coder, by_kind_[kind], by_kind_and_axis_[kind * 3 + axis], inputs, states, value);
+  inputs[kContexts] = 256;
+  CodeMixed(coder, by_kind_[kind], by_kind_and_axis_[kind * 3 + axis], inputs, models, value);
 }
 
 template <class Coder>
@@ -42,16 +42,15 @@ bool PositionCoder<Coder>::Code(Coder& coder, const PositionPredictor& predictor
   PositionPredictor::Vector offset = {};
   // The mean prediction error on the axes coded before, 1/16 of a cell. For the first axis the neighbours' error stands
   // in for it.
-  std::int64_t before = p.activity;
-  const std::size_t shape = std::min(p.parallelograms, kShapes - 1);
+  std::int64_t before = p.near_miss;
   for (std::size_t j = 0; j < 3; ++j) {
     const std::size_t axis = p.axes[j];
     const std::int64_t expected = predictor.Expected(j, offset);
-    const std::size_t around =
-        p.neighbours == 0 ? kClasses - 1 : Class((p.activity + p.surrounding + before) / 3, p.step);
-    const Contexts contexts = {&by_surroundings_[around * 3 + j], &by_axis_[Class(before, p.step) * 3 + j],
-                               &by_spread_[Class(p.spread, p.step) * kShapes + shape],
-                               &by_shape_[std::min<std::size_t>(p.neighbours, 7) * kShapes + shape]};
+    const std::size_t misses =
+        p.neighbours == 0 ? kClasses - 1 : Class((p.near_miss + p.far_miss + before) / 3, p.step);
+    const Contexts contexts = {&by_misses_[misses * 3 + j],
+                               &by_disagreement_[Class(p.disagreement, p.step) * kSupports + p.support],
+                               &by_support_[std::min<std::size_t>(p.neighbours, 7) * kSupports + p.support]};
     bool nonzero = residual[j] != 0;
     CodeBin(coder, contexts, j, 0, nonzero);
     std::int64_t steps = 0;
@@ -80,14 +79,14 @@ bool PositionCoder<Coder>::Code(Coder& coder, const PositionPredictor& predictor
   return coder.ok();
 }
 
-template class PositionCoder<RangeEncoder>;
+template class PositionCoder<RecordedBins>;
 template class PositionCoder<RangeDecoder>;
 
-Status DecodePositions(std::span<const std::uint8_t> bytes, const PositionGraph& graph, const PositionSteps& steps,
-                       int bits, std::vector<GridPosition>& positions) {
-  RangeDecoder range(bytes);
+Status DecodePositions(RangeDecoder& range, const PositionGraph& graph, const PositionSteps& steps, int bits,
+                       std::vector<GridPosition>& positions, RecordedBins* bins) {
   PositionPredictor predictor(graph, steps, bits);
   PositionCoder<RangeDecoder> coder;
+  PositionCoder<RecordedBins> recorder;
   positions.resize(graph.vertices());
   for (const std::uint32_t v : graph.CodingOrder()) {
     PositionResidual residual = {};
@@ -95,9 +94,10 @@ Status DecodePositions(std::span<const std::uint8_t> bytes, const PositionGraph&
     if (!coder.Code(range, predictor, bits, residual, positions[v])) {
       return Status::Corrupt("I-frame: a position off the grid");
     }
+    if (bins) recorder.Code(*bins, predictor, bits, residual, positions[v]);
     predictor.Learn(positions[v]);
   }
-  return range.AtEnd() ? Status::Ok() : Status::Corrupt("I-frame: wrong length of positions");
+  return Status::Ok();
 }
 
 }  // namespace sac

@@ -11,6 +11,7 @@
 #include "format/grid_position.h"
 #include "format/integer_coder.h"
 #include "format/range_coder.h"
+#include "format/recorded_bins.h"
 #include "sac/status.h"
 
 namespace sac {
@@ -31,30 +32,29 @@ class PositionCoder {
 
  private:
   static constexpr std::size_t kUnary = 14;  // bins of a magnitude that have contexts
-  static constexpr std::size_t kKinds = 6;   // kinds of bins with own mixers: the zero bin, then by unary index
+  static constexpr std::size_t kKinds = 3;   // of bins that have mixers of their own: above 0, 1, and 2 or more
   static constexpr std::size_t kClasses = 24;
-  static constexpr std::size_t kShapes = 5;  // classes of the number of parallelograms
-  static constexpr std::size_t kStates = 4;
-  static constexpr std::size_t kInputs = kStates + 1;
+  static constexpr std::size_t kSupports = PositionPredictor::kSupports;
+  static constexpr std::size_t kContexts = 3;
+  static constexpr std::size_t kInputs = kContexts + 1;
 
-  using Bins = std::array<AdaptiveBit, 1 + kUnary>;
-  using Contexts = std::array<Bins*, kStates>;
+  using Bins = std::array<BitModel, 1 + kUnary>;
+  using Contexts = std::array<Bins*, kContexts>;
 
   void CodeBin(Coder& coder, const Contexts& contexts, std::size_t axis, std::size_t bin, bool& value);
 
-  std::vector<Bins> by_surroundings_{kClasses * 3}, by_axis_{kClasses * 3}, by_spread_{kClasses * kShapes},
-      by_shape_{8 * kShapes};
+  std::vector<Bins> by_misses_{kClasses * 3}, by_disagreement_{kClasses * kSupports}, by_support_{8 * kSupports};
   std::vector<Mixer<kInputs>> by_kind_, by_kind_and_axis_;
   std::array<BitModel, 2 * kClasses> signs_;
   UnsignedModels rest_;
 };
 
-extern template class PositionCoder<RangeEncoder>;
+extern template class PositionCoder<RecordedBins>;
 extern template class PositionCoder<RangeDecoder>;
 
-// Decodes the positions, in grid cells, of all vertices of `graph`. Returns kCorrupt when a position is off the grid of
-// `bits` bits per axis or the code does not end where `bytes` does.
-Status DecodePositions(std::span<const std::uint8_t> bytes, const PositionGraph& graph, const PositionSteps& steps,
-                       int bits, std::vector<GridPosition>& positions);
+// Decodes the positions, in grid cells, of all vertices of `graph`, and records their bins in `bins` unless it is null.
+// Returns kCorrupt when a position is off the grid of `bits` bits per axis or the code has ended before.
+Status DecodePositions(RangeDecoder& range, const PositionGraph& graph, const PositionSteps& steps, int bits,
+                       std::vector<GridPosition>& positions, RecordedBins* bins = nullptr);
 
 }  // namespace sac

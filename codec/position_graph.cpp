@@ -10,7 +10,7 @@ namespace sac {
 namespace {
 
 constexpr std::uint32_t kMaxNeighbors = 32;
-constexpr std::size_t kMaxCounted = 8;
+constexpr std::size_t kMaxCounted = 4;
 
 template <class T>
 void SortUnique(std::vector<T>& list) {
@@ -81,8 +81,8 @@ std::span<const std::uint32_t> PositionGraph::Across(std::uint32_t a, std::uint3
 std::vector<std::uint32_t> PositionGraph::CodingOrder() const {
   std::vector<std::uint32_t> order, count(vertices(), 0);
   std::vector<bool> taken(vertices(), false);
-  // queues[k] holds the vertices that have had k neighbours taken, and read[k] is how far it has been read. A vertex
-  // that has moved on to a later queue is skipped.
+  // queues[k] holds the vertices that have had k neighbours taken, and read[k] is how far it has been read. Of a
+  // vertex in several queues the later one comes first, so that it is taken when an earlier one comes to it.
   std::array<std::vector<std::uint32_t>, kMaxCounted + 1> queues;
   std::array<std::size_t, kMaxCounted + 1> read = {};
   std::uint32_t lowest = 0;
@@ -90,7 +90,7 @@ std::vector<std::uint32_t> PositionGraph::CodingOrder() const {
     for (std::size_t k = kMaxCounted; k > 0; --k) {
       while (read[k] < queues[k].size()) {
         const std::uint32_t v = queues[k][read[k]++];
-        if (!taken[v] && count[v] == k) return v;
+        if (!taken[v]) return v;
       }
     }
     while (taken[lowest]) ++lowest;

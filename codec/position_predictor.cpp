@@ -82,12 +82,11 @@ void PositionPredictor::AddParallelograms() {
       }
     }
   }
-  now_.parallelograms = count;
-  now_.spread = 0;
+  now_.support = std::min(count, kSupports - 1);
   parallelogram_ = count > 0 ? Quotient(sum, static_cast<std::int64_t>(count)) : mean_;
   if (count == 0) return;
-  for (std::size_t i = 0; i < count; ++i) now_.spread += Sum(corners[i] - parallelogram_);
-  now_.spread /= 3 * static_cast<std::int64_t>(count);
+  for (std::size_t i = 0; i < count; ++i) now_.disagreement += Sum(corners[i] - parallelogram_);
+  now_.disagreement /= 3 * static_cast<std::int64_t>(count);
   const std::int64_t length = SquareRoot(static_cast<std::uint64_t>(Dot(normal_, normal_)));
   if (length > 0) {
     for (std::int64_t& x : normal_) x = x * 1024 / length;
@@ -114,8 +113,8 @@ void PositionPredictor::AverageNeighbors() {
   const auto count = static_cast<std::int64_t>(known_neighbors_.size());
   mean_ = Quotient(sum, count);
   wide_mean_ = wide > 0 ? Quotient(wide_sum, wide) : mean_;
-  now_.activity = misses / count;
-  now_.surrounding = wide > 0 ? wide_misses / wide : 0;
+  now_.near_miss = misses / count;
+  now_.far_miss = wide > 0 ? wide_misses / wide : 0;
   if (wide > 0) length_ = lengths / wide;
 }
 
@@ -215,8 +214,7 @@ void PositionPredictor::Predict(std::uint32_t vertex) {
     AverageNeighbors();
     AddParallelograms();
     now_.relaxed = Relax();
-    weights_now_ =
-        &weights_[8 * std::min<std::size_t>(now_.parallelograms, 4) + std::min<std::size_t>(now_.neighbours, 7)];
+    weights_now_ = &weights_[now_.support];
     for (std::size_t a = 0; a < 3; ++a) {
       features_[a] = {Bounded(now_.relaxed[a] - parallelogram_[a]), Bounded(mean_[a] - parallelogram_[a]),
                       Bounded(wide_mean_[a] - parallelogram_[a])};

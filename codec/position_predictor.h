@@ -23,6 +23,7 @@ struct PositionSteps {
 class PositionPredictor {
  public:
   using Vector = std::array<std::int64_t, 3>;
+  static constexpr std::size_t kSupports = 5;  // classes of the number of parallelograms
 
   // The prediction of a vertex and what its contexts are chosen by.
   struct Prediction {
@@ -31,11 +32,11 @@ class PositionPredictor {
     std::int64_t step = 1;            // cells
     std::array<std::size_t, 3> axes;  // in coding order; the axis nearest to the surface normal is last
     std::size_t neighbours = 0;       // neighbours with known positions
-    std::size_t parallelograms = 0;
-    std::int64_t spread = 0;       // mean distance of the parallelograms' corners from their mean, per axis
-    std::int64_t activity = 0;     // mean prediction error of the known neighbours
-    std::int64_t surrounding = 0;  // mean prediction error of the known neighbours' known neighbours
-    Vector relaxed = {};           // the position where the surface bends least (spec.md 5.5.4)
+    std::size_t support = 0;          // parallelograms, kSupports - 1 for more
+    std::int64_t disagreement = 0;    // mean distance of the parallelograms' corners from their mean, per axis
+    std::int64_t near_miss = 0;       // mean prediction error of the known neighbours
+    std::int64_t far_miss = 0;        // mean prediction error of the known neighbours' known neighbours
+    Vector relaxed = {};              // the position where the surface bends least (spec.md 5.5.4)
   };
 
   // `graph` must outlive the object. Positions have `bits` bits per axis.
@@ -81,7 +82,7 @@ class PositionPredictor {
   std::vector<Slot> slot_;
   std::vector<std::int64_t> misses_;       // prediction error of each known vertex, mean over the axes
   std::int64_t last_cell_;                 // largest coordinate of the grid, cells
-  std::array<Vector, 40> weights_;         // by numbers of parallelograms and neighbours, 1/65536
+  std::array<Vector, kSupports> weights_;  // by support, 1/65536
   std::int64_t tangent_weight_ = 1 << 15;  // 1/65536
   std::int64_t length_ = 0;                // mean length of the edges near the predicted vertex
   Vector last_;                            // position learnt last

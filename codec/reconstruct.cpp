@@ -3,7 +3,8 @@
 
 #include <Eigen/Geometry>
 #include <algorithm>
-#include <array>
+#include <memory>
+#include <utility>
 
 #include "geometry/deformation.h"
 
@@ -14,10 +15,26 @@ namespace {
 // rounding errors and is computed anew.
 constexpr double kRoundingShare = 1.0 / (1 << 16);
 
-constexpr std::array kHarmonicPlanes = {kMotion, kDisplacement, kDetail};
-
 const HarmonicBasis& BasisOf(const Shape& shape, Plane plane) {
   return plane == kDetail ? shape.patch_basis : shape.basis;
+}
+
+using Parts = std::vector<PlaneField::Part>;
+
+Parts AtHandles(const Shape& shape) {
+  Parts parts;
+  const Handles& handles = shape.blend.handles();
+  for (std::size_t c = 0; c < shape.components.size(); ++c) {
+    parts.push_back({static_cast<Eigen::Index>(handles.components[c].first), shape.AtHandles(c)});
+  }
+  return parts;
+}
+
+Parts InFunctions(const HarmonicBasis& basis) {
+  Parts parts;
+  for (const ComponentHarmonics& c : basis.components)
+    parts.push_back({static_cast<Eigen::Index>(c.functions.first), c.vectors});
+  return parts;
 }
 
 }  // namespace
@@ -44,11 +61,12 @@ Eigen::VectorXd PlaneUnits(const Shape& shape, const SequenceHeader& header, Pla
   return static_cast<double>(header.detail_step) / kCoefficientsPerStep / counts.sqrt();
 }
 
-PlaneField::PlaneField(const HarmonicBasis& basis, const PlaneLayout& layout, Eigen::VectorXd units)
-    : basis_(basis), units_(std::move(units)), held_(layout.size()) {
-  Eigen::Index vertices = 0;
-  for (const ComponentHarmonics& c : basis.components) vertices += c.vectors.rows();
-  values_.setZero(vertices, static_cast<Eigen::Index>(layout.channels));
+PlaneField::PlaneField(std::vector<Part> parts, std::span<const HarmonicIndex> order, std::size_t channels,
+                       Eigen::VectorXd units)
+    : parts_(std::move(parts)), order_(order), units_(std::move(units)), held_(order.size() * channels) {
+  Eigen::Index rows = 0;
+  for (const Part& part : parts_) rows += part.vectors.rows();
+  values_.setZero(rows, static_cast<Eigen::Index>(channels));
 }
 
 void PlaneField::Reset() {
@@ -65,14 +83,14 @@ const Eigen::MatrixXd& PlaneField::Update(const PlaneValues& coefficients) {
   largest_ = std::max(largest_, size);
   std::size_t i = 0;
   Eigen::Index row = 0;
-  for (const HarmonicIndex& index : basis_.order) {
-    const ComponentHarmonics& c = basis_.components[index.component];
+  for (const HarmonicIndex& index : order_) {
+    const Part& part = parts_[index.component];
     const double unit = units_[row++];
     for (Eigen::Index channel = 0; channel < values_.cols(); ++channel, ++i) {
       const std::int32_t change = coefficients[i] - held_[i];
       if (change == 0) continue;
       held_[i] = coefficients[i];
-      values_.col(channel).segment(c.component.first, c.component.count) += (change * unit) * c.vectors.col(index.k);
+      values_.col(channel).segment(part.first, part.vectors.rows()) += (change * unit) * part.vectors.col(index.k);
     }
   }
   return values_;
@@ -81,55 +99,105 @@ const Eigen::MatrixXd& PlaneField::Update(const PlaneValues& coefficients) {
 Reconstructor::Reconstructor(const Shape& shape, const SequenceHeader& header)
     : shape_(shape),
       header_(header),
+      motion_(AtHandles(shape), shape.basis.order, shape.layouts[kMotion].channels, PlaneUnits(shape, header, kMotion)),
+      displacement_(InFunctions(shape.basis), shape.basis.order, shape.layouts[kDisplacement].channels,
+                    PlaneUnits(shape, header, kDisplacement)),
+      detail_(InFunctions(shape.patch_basis), shape.patch_basis.order, shape.layouts[kDetail].channels,
+              PlaneUnits(shape, header, kDetail)),
       correction_unit_(static_cast<double>(header.correction_step) / kCoefficientsPerStep),
-      poisson_(shape.edges, shape.components, shape.masses),
-      gradients_(shape.vertices()) {
-  for (const Plane p : kHarmonicPlanes) {
-    fields_.emplace_back(BasisOf(shape, p), shape.layouts[p], PlaneUnits(shape, header, p));
-  }
-}
+      gradients_(shape.blend.handles().vertices.size()) {}
 
-bool Reconstructor::StartGroup() {
-  for (PlaneField& field : fields_) field.Reset();
-  return UseKeyReference();
+void Reconstructor::StartGroup() {
+  for (PlaneField* field : {&motion_, &displacement_, &detail_}) field->Reset();
+  previous_ = false;
 }
 
 bool Reconstructor::StartFrame(bool intra) {
-  if (intra || !header_.references_previous()) return UseKeyReference();
-  reference_is_key_ = false;
-  return poisson_.SetReference(aligned_, CotangentWeights(aligned_, shape_.triangles, shape_.edges));
+  previous_ = header_.references_previous() && !intra;
+  if (!previous_) return true;
+  const std::vector<double> weights = CotangentWeights(aligned_, shape_.triangles, shape_.edges);
+  const auto set_reference = [&](BlendSystem& system) {
+    system.SetReference(shape_.blend, shape_.graph, Product(weights, shape_.unevenness), shape_.masses, aligned_);
+  };
+  if (of_previous_) {
+    set_reference(*of_previous_);
+  } else {
+    auto system = std::make_unique<BlendSystem>();
+    set_reference(*system);
+    if (!system->Analyze()) return false;
+    of_previous_ = std::move(system);  // only now, so that nothing is kept of what memory was too short for
+  }
+  return of_previous_->Factorize();
 }
 
-bool Reconstructor::UseKeyReference() {
-  if (!reference_is_key_) reference_is_key_ = poisson_.SetReference(shape_.positions, shape_.weights);
-  return reference_is_key_;
+void Reconstructor::BlendMotion(const PlaneValues& motion) {
+  const BlendSystem& system = previous_ ? *of_previous_ : *shape_.system;
+  const Eigen::MatrixXd& fields = motion_.Update(motion);
+  if (std::all_of(motion.begin(), motion.end(), [](std::int32_t c) { return c == 0; })) {
+    system.Rest(blend_);  // exact, so that a shape without motion does not drift
+    return;
+  }
+  for (Eigen::Index h = 0; h < fields.rows(); ++h) {
+    double channels[9];
+    for (int c = 0; c < 9; ++c) channels[c] = fields(h, c);
+    gradients_[static_cast<std::size_t>(h)] = DeformationGradient(channels);
+  }
+  system.Solve(gradients_, scratch_, blend_);
+}
+
+void Reconstructor::BlendDisplacement(const PlaneValues& displacement) { blend_ += displacement_.Update(displacement); }
+
+void Reconstructor::PlaceBlend(const RigidTransform* transform) {
+  about_origin_ = blend_;
+  shape_.blend.MoveToOrigin(about_origin_);
+  if (transform) {
+    const Eigen::RowVector3d shift = transform->translation - shape_.centre * transform->rotation.transpose();
+    for (Eigen::Index i = 0; i < about_origin_.rows(); ++i) {
+      const Eigen::RowVector3d row = about_origin_.row(i);
+      about_origin_.row(i) = row * transform->rotation.transpose();
+    }
+    shape_.blend.Translate(shift, about_origin_);
+  }
+}
+
+void Reconstructor::ApplyBlend(const RigidTransform* transform, PositionMatrix& positions) {
+  PlaceBlend(transform);
+  shape_.blend.Apply(about_origin_, positions);
+}
+
+const RowMatrix& Reconstructor::ReconstructBlend(const FramePlanes& planes, const RigidTransform& transform) {
+  BlendMotion(planes[kMotion]);
+  BlendDisplacement(planes[kDisplacement]);
+  PlaceBlend(&transform);
+  return about_origin_;
+}
+
+void Reconstructor::AddDetail(const PlaneValues& detail) {
+  if (!detail.empty()) aligned_ += detail_.Update(detail);
+}
+
+void Reconstructor::AddCorrection(const PlaneValues& correction) {
+  for (std::size_t i = 0; i < correction.size(); ++i) {
+    if (correction[i] != 0) {
+      aligned_(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) += correction[i] * correction_unit_;
+    }
+  }
 }
 
 const PositionMatrix& Reconstructor::ReconstructMotion(const PlaneValues& motion) {
-  const Eigen::MatrixXd& fields = fields_[kMotion].Update(motion);
-  if (std::all_of(motion.begin(), motion.end(), [](std::int32_t c) { return c == 0; })) {
-    aligned_ = reference();  // exact, so that a shape without motion does not drift
-    return aligned_;
-  }
-  for (Eigen::Index v = 0; v < fields.rows(); ++v) {
-    double channels[9];
-    for (int c = 0; c < 9; ++c) channels[c] = fields(v, c);
-    gradients_[static_cast<std::size_t>(v)] = DeformationGradient(channels);
-  }
-  aligned_ = poisson_.Solve(gradients_);
+  BlendMotion(motion);
+  ApplyBlend(nullptr, aligned_);
   return aligned_;
 }
 
 const PositionMatrix& Reconstructor::Add(Plane plane, const PlaneValues& values) {
-  if (values.empty()) return aligned_;
-  if (plane != kCorrection) {
-    aligned_ += fields_[plane].Update(values);
-    return aligned_;
-  }
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (values[i] != 0) {
-      aligned_(static_cast<Eigen::Index>(i / 3), static_cast<Eigen::Index>(i % 3)) += values[i] * correction_unit_;
-    }
+  if (plane == kDisplacement) {
+    BlendDisplacement(values);
+    ApplyBlend(nullptr, aligned_);
+  } else if (plane == kDetail) {
+    AddDetail(values);
+  } else {
+    AddCorrection(values);
   }
   return aligned_;
 }
@@ -175,8 +243,15 @@ PositionMatrix Reconstructor::RemoveRigid(const PositionMatrix& positions, const
 }
 
 const PositionMatrix& Reconstructor::Reconstruct(const FramePlanes& planes, const RigidTransform& transform) {
-  ReconstructMotion(planes[kMotion]);
-  for (const Plane p : {kDisplacement, kDetail, kCorrection}) Add(p, planes[p]);
+  BlendMotion(planes[kMotion]);
+  BlendDisplacement(planes[kDisplacement]);
+  if (planes[kDetail].empty() && planes[kCorrection].empty() && !header_.references_previous()) {
+    ApplyBlend(&transform, moved_);  // the rigid motion of the handles is that of all vertices
+    return moved_;
+  }
+  ApplyBlend(nullptr, aligned_);
+  AddDetail(planes[kDetail]);
+  AddCorrection(planes[kCorrection]);
   Transform(aligned_, transform, moved_);
   return moved_;
 }

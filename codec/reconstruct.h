@@ -3,14 +3,17 @@
 
 #include <Eigen/Core>
 #include <cstdint>
+#include <memory>
 #include <span>
 #include <vector>
 
+#include "codec/blend.h"
+#include "codec/blend_system.h"
 #include "codec/shape.h"
 #include "format/prediction.h"
 #include "format/rigid_motion.h"
 #include "format/sequence_header.h"
-#include "geometry/poisson_system.h"
+#include "geometry/sparse_cholesky.h"
 #include "sac/mesh.h"
 
 namespace sac {
@@ -24,20 +27,28 @@ struct RigidTransform {
   Eigen::RowVector3d translation;
 };
 
-// The values of one plane at the vertices: harmonics times coefficients (spec.md 6.5.1). An update adds only the
-// harmonics whose coefficients changed.
+// The values of one plane where it is asked for (spec.md 6.5.1): harmonics times coefficients, at handles, in functions
+// of the blend or at vertices. An update adds only the harmonics whose coefficients changed.
 class PlaneField {
  public:
-  // `basis` must outlive the object. `units` has the unit of the coefficients in each row.
-  PlaneField(const HarmonicBasis& basis, const PlaneLayout& layout, Eigen::VectorXd units);
+  // The harmonics of one component or patch.
+  struct Part {
+    Eigen::Index first;              // the first of the rows of all values that are its own
+    const Eigen::MatrixXd& vectors;  // those rows x harmonics
+  };
+  // `parts` and `order`, which has the harmonic of each row of the plane, must outlive the object. `units` has the unit
+  // of the coefficients in each row.
+  PlaneField(std::vector<Part> parts, std::span<const HarmonicIndex> order, std::size_t channels,
+             Eigen::VectorXd units);
 
-  // The values for `coefficients`, vertices x channels, valid until the next call.
+  // The values for `coefficients`, rows of all parts x channels, valid until the next call.
   const Eigen::MatrixXd& Update(const PlaneValues& coefficients);
   // Sets all values to zero, so that rounding errors do not depend on what was decoded before a group.
   void Reset();
 
  private:
-  const HarmonicBasis& basis_;
+  std::vector<Part> parts_;
+  std::span<const HarmonicIndex> order_;
   Eigen::VectorXd units_;
   std::vector<std::int32_t> held_;
   Eigen::MatrixXd values_;
@@ -57,9 +68,8 @@ class Reconstructor {
   // parts.
   Reconstructor(const Shape& shape, const SequenceHeader& header);
 
-  // Forgets all frames before, so that a group decodes to the same positions wherever decoding begins. Returns false
-  // when the linear system of the reference shape cannot be factorized.
-  bool StartGroup();
+  // Forgets all frames before, so that a group decodes to the same positions wherever decoding begins.
+  void StartGroup();
   // Sets the reference shape of the next frame. It is M'0, but in a stream that references the previous frame it is the
   // frame reconstructed last, unless `intra`. Returns false when its linear system cannot be factorized.
   bool StartFrame(bool intra);
@@ -80,26 +90,44 @@ class Reconstructor {
   // The inverse of ApplyRigid(), for encoders.
   PositionMatrix RemoveRigid(const PositionMatrix& positions, const RigidMotion& rigid) const;
 
-  // The positions, model units, of a frame with these planes and transform. The next call overwrites the matrix.
+  // The positions, model units, of a frame with these planes and transform. The next call overwrites the matrix, and
+  // only in streams that reference the previous frame it remembers the shape for the next StartFrame().
   const PositionMatrix& Reconstruct(const FramePlanes& planes, const RigidTransform& transform);
   const PositionMatrix& Reconstruct(const FrameCoefficients& frame) {
     return Reconstruct(frame.planes, TransformOf(frame.rigid));
   }
 
+  // The coefficients of the blend, about the origin (Blend::MoveToOrigin), of a frame with these planes and transform,
+  // without detail and correction. The next call overwrites the matrix. Not in streams that reference the previous
+  // frame.
+  const RowMatrix& ReconstructBlend(const FramePlanes& planes, const RigidTransform& transform);
+
   // The shape that the next frame's motion is measured against.
-  const PositionMatrix& reference() const { return reference_is_key_ ? shape_.positions : aligned_; }
+  const PositionMatrix& reference() const { return previous_ ? aligned_ : shape_.positions; }
 
  private:
-  bool UseKeyReference();
+  // Sets blend_ to what the motion plane gives, and adds the displacement plane.
+  void BlendMotion(const PlaneValues& motion);
+  void BlendDisplacement(const PlaneValues& displacement);
+  // Sets about_origin_ to blend_ with `transform` applied, if it is not null.
+  void PlaceBlend(const RigidTransform* transform);
+  // Sets `positions` to those that blend_ gives, `transform` applied.
+  void ApplyBlend(const RigidTransform* transform, PositionMatrix& positions);
+  void AddDetail(const PlaneValues& detail);
+  void AddCorrection(const PlaneValues& correction);
   void Transform(const PositionMatrix& aligned, const RigidTransform& transform, PositionMatrix& moved) const;
 
   const Shape& shape_;
   SequenceHeader header_;
-  std::vector<PlaneField> fields_;  // one for each plane in harmonics
+  PlaneField motion_, displacement_, detail_;  // at handles, in functions of the blend, at vertices
   double correction_unit_;
-  PoissonSystem poisson_;
-  bool reference_is_key_ = false;
+  // The system of the frame before, in streams that reference it.
+  std::unique_ptr<BlendSystem> of_previous_;
+  bool previous_ = false;  // the reference shape is the frame before
   DeformationGradients gradients_;
+  BlendSystem::Scratch scratch_;
+  RowMatrix blend_;         // coefficients of the blend's functions
+  RowMatrix about_origin_;  // the same about the origin, after the rigid motion where there is one
   PositionMatrix aligned_;  // the frame before its rigid motion
   PositionMatrix moved_;    // the frame after its rigid motion
 };

@@ -2,9 +2,11 @@
 #include "codec/shape.h"
 
 #include <algorithm>
+#include <functional>
 #include <string>
 #include <utility>
 
+#include "codec/handles.h"
 #include "format/memory.h"
 #include "geometry/sparse_cholesky.h"
 
@@ -12,66 +14,97 @@ namespace sac {
 
 namespace {
 
-constexpr std::uint64_t kFactorMemory = 12;  // bytes per value of a sparse factor: a double and its row
-constexpr std::uint64_t kFieldMemory = 700;  // bytes per vertex of a Reconstructor and of the frames it has ready
+constexpr std::uint64_t kFactorMemory = 12;     // bytes per value of a sparse factor: a double and its row
+constexpr std::uint64_t kFieldMemory = 100;     // bytes per vertex of a Reconstructor and of the frames it has ready
+constexpr std::uint64_t kHandleMemory = 220;    // bytes per handle of a Reconstructor
+constexpr std::uint64_t kFunctionMemory = 110;  // bytes per function of a Reconstructor
+
+// The number of handles of each component. A shape that changes from frame to frame has its vertices for handles.
+std::vector<std::uint32_t> HandleCounts(const SequenceHeader& header, std::span<const Component> components,
+                                        std::span<const std::uint32_t> harmonics, std::uint32_t handles_per_harmonic) {
+  std::vector<std::uint32_t> counts;
+  for (std::size_t i = 0; i < components.size(); ++i) {
+    counts.push_back(
+        HandleCount(components[i].count, harmonics[i], header.references_previous() ? 0 : handles_per_harmonic));
+  }
+  return counts;
+}
 
 // Checks the sizes of the harmonics against the limits and notes in `shape` their work and memory.
 Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> components,
-                      std::span<const std::uint32_t> counts, std::uint32_t samples_per_harmonic, const Limits& limits,
-                      Shape& shape) {
+                      std::span<const std::uint32_t> counts, std::span<const std::uint32_t> handles,
+                      const Limits& limits, Shape& shape) {
   double& work = shape.work;
   double memory = static_cast<double>(MeshMemory(header.vertices, header.triangles));
-  std::uint64_t values = 0;
+  double values = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (counts[i] == 0 || counts[i] > components[i].count) {
-      return Status::Corrupt("I-frame: more harmonics than vertices in a component");
-    }
     if (counts[i] > limits.expert.harmonics) return Status::Limit("more harmonics in a component than the limit");
-    values += static_cast<std::uint64_t>(counts[i]) * components[i].count;
-    const double samples = static_cast<double>(samples_per_harmonic) * counts[i];
-    work += HarmonicsWork(components[i].count, counts[i], samples);
-    memory += HarmonicsMemory(components[i].count, counts[i], samples);
+    values += (handles[i] == components[i].count ? 1.0 : 5.0) * counts[i] * handles[i];
+    work += HarmonicsWork(components[i].count, counts[i], handles[i]);
+    memory += HarmonicsMemory(components[i].count, counts[i], handles[i]);
   }
   if (header.detail_step > 0) {
     work += 10.0 * header.patch_size * header.patch_size * header.vertices;
-    values += static_cast<std::uint64_t>(header.patch_size) * header.vertices;
+    values += static_cast<double>(header.patch_size) * header.vertices;
     memory += static_cast<double>(sizeof(double)) * header.patch_size * header.vertices;
   }
   if (work > limits.work) return Status::Limit("the harmonic basis takes more work than the limit");
-  if (values > limits.expert.basis_values) return Status::Limit("the harmonic basis is larger than the limit");
+  if (values > static_cast<double>(limits.expert.basis_values))
+    return Status::Limit("the harmonic basis is larger than the limit");
   if (memory > static_cast<double>(limits.memory))
     return Status::Limit("the harmonic basis takes more memory than the limit");
   shape.memory = static_cast<std::uint64_t>(memory);
   return Status::Ok();
 }
 
-// Checks the work and memory of the sparse linear systems against the limits and adds them to those of `shape`. The
-// factorization of the whole mesh's Laplacian is analyzed here, and those of its components and patches are counted as
-// no larger: the shape is charged with the work of three and the memory of two, and each frame that references the
-// frame before with the work of one more.
-Status CheckSystems(const SequenceHeader& header, const Limits& limits, Shape& shape) {
-  const auto vertices = static_cast<std::uint32_t>(shape.vertices());
-  const FactorSize max_size{std::min(limits.expert.factor_values, (limits.memory - shape.memory) / (2 * kFactorMemory)),
+// Factorizes the linear system after checking its work and memory against the limits, and adds them to those of
+// `shape`. The factors of components and patches are counted as no larger: the shape is charged with the work of three
+// and the memory of two, and each frame that references the frame before with the work and memory of one more.
+Status FactorizeSystem(const SequenceHeader& header, std::span<const std::uint32_t> harmonics, const Limits& limits,
+                       Shape& shape) {
+  const std::uint64_t spare = limits.memory - std::min(limits.memory, shape.memory + shape.system->memory());
+  const FactorSize max_size{std::min(limits.expert.factor_values, spare / (2 * kFactorMemory)),
                             (limits.work - shape.work) / 3};
-  SparseCholesky probe;
-  if (!probe.Analyze(LaplacianMatrix(shape.edges.ends, shape.weights, 0, vertices), max_size)) {
+  if (!shape.system->Analyze(max_size)) {
     return Status::Limit("the mesh is too entangled: its linear system takes more work or memory than the limit");
   }
-  shape.work += 3 * probe.size().work;
-  shape.memory += 2 * kFactorMemory * probe.size().values;
-  shape.reconstructor_memory = kFactorMemory * probe.size().values + kFieldMemory * vertices;
+  const FactorSize& size = shape.system->size();
+  shape.work += 3 * size.work;
+  shape.memory += 2 * kFactorMemory * size.values + shape.system->memory();
+  shape.reconstructor_memory = kHandleMemory * shape.blend.handles().vertices.size() +
+                               kFunctionMemory * shape.blend.columns() + kFieldMemory * shape.vertices();
+  if (header.references_previous()) {
+    shape.reconstructor_memory += kFactorMemory * size.values + shape.system->memory();
+    shape.memory += kFactorMemory * size.values + shape.system->memory();
+  }
   if (MaxGroupValues(limits, shape) < FrameValues(shape.layouts))
     return Status::Limit("a frame takes more memory than the limit");
-  double frame = 6.0 * static_cast<double>(probe.size().values);
-  for (const PlaneLayout& layout : {shape.layouts[kMotion], shape.layouts[kDisplacement]}) {
-    frame += static_cast<double>(layout.size()) * vertices;
+  double frame = shape.system->work() + 100.0 * static_cast<double>(shape.vertices());
+  for (std::size_t c = 0; c < harmonics.size(); ++c) {
+    frame += harmonics[c] * (9.0 * shape.blend.handles().components[c].count + 3.0 * shape.blend.functions()[c].count);
   }
-  if (header.references_previous()) frame += probe.size().work;
+  if (header.references_previous()) frame += size.work;
   if (frame > limits.expert.frame_work) return Status::Limit("a frame takes more work than the limit");
-  return Status::Ok();
+  return shape.system->Factorize() ? Status::Ok() : Status::Corrupt("the first frame's shape is singular");
 }
 
 }  // namespace
+
+PositionMatrix ShapePositions(const SequenceHeader& header, std::span<const GridPosition> grid) {
+  PositionMatrix positions(static_cast<Eigen::Index>(grid.size()), 3);
+  const Eigen::RowVector3d origin(header.origin_x, header.origin_y, header.origin_z);
+  for (std::size_t v = 0; v < grid.size(); ++v) {
+    positions.row(static_cast<Eigen::Index>(v)) =
+        origin + static_cast<double>(header.cell) * Eigen::RowVector3d(grid[v][0], grid[v][1], grid[v][2]);
+  }
+  return positions;
+}
+
+std::vector<double> Product(std::span<const double> weights, std::span<const double> unevenness) {
+  std::vector<double> product(weights.size());
+  std::transform(weights.begin(), weights.end(), unevenness.begin(), product.begin(), std::multiplies<>());
+  return product;
+}
 
 Limits LimitsOfIFrame(const Limits& limits, std::size_t i_frame_bytes) {
   Limits narrowed = limits;
@@ -94,41 +127,56 @@ unsigned UseThreads(unsigned threads, const Limits& limits, Shape& shape) {
 }
 
 Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<const std::uint32_t> counts,
-                  std::uint32_t samples_per_harmonic, const Limits& limits, Shape& shape) {
+                  std::uint32_t handles_per_harmonic, const Limits& limits, Shape& shape) {
   if (counts.size() != mesh.components.size()) {
     return Status::Corrupt("I-frame: " + std::to_string(mesh.components.size()) + " components, but harmonics for " +
                            std::to_string(counts.size()));
   }
+  for (std::size_t i = 0; i < counts.size(); ++i) {
+    if (counts[i] == 0 || counts[i] > mesh.components[i].count) {
+      return Status::Corrupt("I-frame: more harmonics than vertices in a component");
+    }
+  }
   shape.work = 0;
-  SAC_RETURN_IF_ERROR(CheckHarmonics(header, mesh.components, counts, samples_per_harmonic, limits, shape));
+  const std::vector<std::uint32_t> handle_counts = HandleCounts(header, mesh.components, counts, handles_per_harmonic);
+  SAC_RETURN_IF_ERROR(CheckHarmonics(header, mesh.components, counts, handle_counts, limits, shape));
 
   shape.triangles = std::move(mesh.triangles);
   shape.components = std::move(mesh.components);
   shape.edges = BuildEdges(shape.triangles);
-  shape.positions.resize(static_cast<Eigen::Index>(mesh.grid.size()), 3);
-  const Eigen::RowVector3d origin(header.origin_x, header.origin_y, header.origin_z);
-  for (std::size_t v = 0; v < mesh.grid.size(); ++v) {
-    const GridPosition& g = mesh.grid[v];
-    shape.positions.row(static_cast<Eigen::Index>(v)) =
-        origin + static_cast<double>(header.cell) * Eigen::RowVector3d(g[0], g[1], g[2]);
-  }
-  shape.weights = CotangentWeights(shape.positions, shape.triangles, shape.edges);
+  shape.graph = BuildEdgeGraph(static_cast<std::uint32_t>(mesh.grid.size()), shape.edges);
+  shape.positions = ShapePositions(header, mesh.grid);
   shape.masses = VertexMasses(shape.positions, shape.triangles);
   shape.centre = shape.masses.transpose() * shape.positions;
   std::vector<std::uint32_t> patch_sizes;
   for (const Component& patch : mesh.patches) patch_sizes.push_back(patch.count);
   shape.layouts = LayOutPlanes(header, counts, patch_sizes);
-  SAC_RETURN_IF_ERROR(CheckSystems(header, limits, shape));
+
+  std::vector<std::uint32_t> leaders;
+  for (std::size_t i = 0; i < counts.size(); ++i) leaders.push_back(LeaderCount(handle_counts[i], counts[i]));
+  Handles handles;
+  SAC_RETURN_IF_ERROR(ChooseHandles(shape.graph, EdgeLengths(shape.edges, mesh.grid), shape.components, handle_counts,
+                                    leaders, limits.work - shape.work, handles));
+  shape.blend = Blend(std::move(handles), shape.components, shape.graph, shape.positions, shape.centre);
+  shape.unevenness = Unevenness(shape.edges, mesh.grid, shape.components);
+  const std::vector<double> weights = CotangentWeights(shape.positions, shape.triangles, shape.edges);
+  shape.system = std::make_unique<BlendSystem>();
+  shape.system->SetReference(shape.blend, shape.graph, Product(weights, shape.unevenness), shape.masses,
+                             shape.positions);
+  SAC_RETURN_IF_ERROR(FactorizeSystem(header, counts, limits, shape));
   if (header.detail_step > 0) {
     // Equal masses make the harmonics of each patch orthogonal without weights.
     const Eigen::VectorXd alike = Eigen::VectorXd::Ones(shape.positions.rows());
-    SAC_RETURN_IF_ERROR(ComputeHarmonics({shape.edges, shape.weights, alike, mesh.grid, mesh.patches, patch_sizes}, {},
-                                         shape.patch_basis));
+    const std::vector<double> uneven = Product(weights, Unevenness(shape.edges, mesh.grid, mesh.patches));
+    SAC_RETURN_IF_ERROR(ComputeHarmonics({shape.edges, uneven, alike, mesh.patches, patch_sizes}, shape.patch_basis));
   }
-  const Spare spare{limits.work - shape.work, static_cast<double>(limits.memory - shape.memory)};
-  return ComputeHarmonics(
-      {shape.edges, shape.weights, shape.masses, mesh.grid, shape.components, counts, samples_per_harmonic}, spare,
-      shape.basis);
+  SAC_RETURN_IF_ERROR(ComputeBlendHarmonics(shape.blend, *shape.system, shape.graph, shape.components, shape.masses,
+                                            counts, shape.basis));
+  for (std::size_t c = 0; c < shape.components.size(); ++c) {
+    shape.at_handles.push_back(shape.blend.IsAffine(c) ? shape.blend.AtHandles(c, shape.basis.components[c].vectors)
+                                                       : Eigen::MatrixXd());
+  }
+  return Status::Ok();
 }
 
 }  // namespace sac

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
-#include <array>
 #include <cstdint>
+#include <memory>
+#include <span>
 #include <vector>
 
+#include "codec/blend.h"
+#include "codec/blend_system.h"
 #include "codec/harmonics.h"
 #include "format/grid_position.h"
 #include "format/plane_layout.h"
@@ -26,24 +29,40 @@ struct DecodedMesh {
   std::vector<Component> patches;  // empty without a detail plane
 };
 
+// The positions of M'0 whose places on the grid are `grid`, model units.
+PositionMatrix ShapePositions(const SequenceHeader& header, std::span<const GridPosition> grid);
+
 // Everything that both directions derive from the I-frame (spec.md 6).
 struct Shape {
   std::vector<Triangle> triangles;
   std::vector<Component> components;
   EdgeList edges;
-  PositionMatrix positions;     // of M'0, model units
-  Eigen::RowVector3d centre;    // area-weighted mean of M'0, model units
-  std::vector<double> weights;  // cotangent weight of each edge in M'0
-  Eigen::VectorXd masses;       // area share of each vertex in M'0, sum 1
-  HarmonicBasis basis;
-  HarmonicBasis patch_basis;  // empty without a detail plane
+  EdgeGraph graph;            // of `edges`
+  PositionMatrix positions;   // of M'0, model units
+  Eigen::RowVector3d centre;  // area-weighted mean of M'0, model units
+  Eigen::VectorXd masses;     // area share of each vertex in M'0, sum 1
+  // How much each edge's weight is scaled in this shape and in every other (spec.md 6.4.2).
+  std::vector<double> unevenness;
+  Blend blend;
+  std::unique_ptr<BlendSystem> system;  // of M'0, factorized
+  HarmonicBasis basis;                  // in functions of the blend
+  // Of each component the values of its harmonics at its handles, handles x harmonics. Empty where each vertex is a
+  // handle: there they are the coefficients in `basis`.
+  std::vector<Eigen::MatrixXd> at_handles;
+  HarmonicBasis patch_basis;  // at vertices; empty without a detail plane
   PlaneLayouts layouts;
   double work = 0;           // estimated number of multiplications that building the shape took
   std::uint64_t memory = 0;  // estimated bytes at the peak of building the shape, with one Reconstructor for it
   std::uint64_t reconstructor_memory = 0;  // estimated bytes of each further Reconstructor
 
   std::size_t vertices() const { return static_cast<std::size_t>(positions.rows()); }
+  const Eigen::MatrixXd& AtHandles(std::size_t c) const {
+    return blend.IsAffine(c) ? at_handles[c] : basis.components[c].vectors;
+  }
 };
+
+// The products of weights and unevenness, edge by edge.
+std::vector<double> Product(std::span<const double> weights, std::span<const double> unevenness);
 
 // The limits for what an I-frame packet of `i_frame_bytes` bytes may ask for: small packets may cause less work
 // (spec.md 9).
@@ -58,11 +77,13 @@ std::uint64_t MaxGroupValues(const Limits& limits, const Shape& shape);
 unsigned UseThreads(unsigned threads, const Limits& limits, Shape& shape);
 
 // Builds the shape of the first frame `mesh`. `counts` has the number of harmonics of each component of `mesh`, from 1
-// to the component's number of vertices. `samples_per_harmonic` is that of LaplaceProblem.
+// to the component's number of vertices. `handles_per_harmonic` is the number of handles for each of them; 0: every
+// vertex is a handle.
 //
 // Returns kLimit when the basis or a frame would take more memory or work than `limits` allows, which is estimated
-// before either is spent; kCorrupt when `counts` does not fit the components or the harmonics do not converge.
+// before either is spent; kCorrupt when `counts` does not fit the components, the harmonics do not converge or the
+// linear system is singular.
 Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<const std::uint32_t> counts,
-                  std::uint32_t samples_per_harmonic, const Limits& limits, Shape& shape);
+                  std::uint32_t handles_per_harmonic, const Limits& limits, Shape& shape);
 
 }  // namespace sac

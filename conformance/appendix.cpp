@@ -82,15 +82,14 @@ class Listing {
         element("side information, a range code");
         break;
       case PacketType::kGroup:
-        for (const char* name : {"frames", "first_frame", "pyramid"}) element(number(name, reader.Varint()));
+        for (const char* name : {"frames", "first_frame", "structure"}) element(number(name, reader.Varint()));
         reader.Bytes(reader.remaining());
         element("frames, a range code");
         break;
       case PacketType::kEnd:
         element(number("frames", reader.Varint()));
         break;
-      case PacketType::kFrame:
-      case PacketType::kGroupEnd:
+      default:
         break;
     }
   }

@@ -5,7 +5,7 @@
 #include <functional>
 #include <span>
 
-#include "format/group_structure.h"
+#include "format/group.h"
 #include "format/prediction.h"
 #include "sac/status.h"
 

@@ -81,6 +81,11 @@ TEST(Conformance, ValidStreamsDecode) {
     ASSERT_TRUE(d.status.ok()) << d.status.message();
     const Mesh& mesh = *d.decoder.mesh();
     EXPECT_EQ(d.frames.size(), vector.at("frames"));
+    Json segments = Json::array();
+    for (const DecodedFrame& frame : d.frames) {
+      if (frame.segment == segments.size()) segments.push_back({frame.index, frame.positions.size()});
+    }
+    EXPECT_EQ(segments.size() > 1 ? segments : Json(), vector.value("segments", Json()));
     EXPECT_EQ(mesh.positions.size(), vector.at("vertices"));
     EXPECT_EQ(mesh.triangles.size(), vector.at("triangles"));
     EXPECT_EQ(TuplesCrc32(mesh.triangles), vector.at("triangles_crc32"));

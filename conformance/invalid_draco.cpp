@@ -114,9 +114,10 @@ void AddDraco(Collection& c) {
          AddAttribute(m, Attribute::COLOR, draco::DT_UINT8, std::vector<std::array<std::uint8_t, 3>>(6, {1, 2, 3}));
        }));
   change_draco("R37", "point", [](StreamParts& p) { p.i_frame.welds = {{6, 0}}; });
-  change_draco("R38", "positions", [](StreamParts& p) { p.i_frame.positions.insert(p.i_frame.positions.end(), 5, 1); });
-  change_draco("R38", "zero", [](StreamParts& p) { p.i_frame.positions.push_back(0); });
-  change_draco("R38", "short", [](StreamParts& p) { p.i_frame.positions.clear(); });
+  change_draco("R30", "positions_long", [](StreamParts& p) {
+    for (std::uint32_t more : {1u, 2u, 3u}) p.i_frame.positions.Raw(more, 32);
+  });
+  change_draco("R30", "positions_short", [](StreamParts& p) { p.i_frame.positions = {}; });
   const auto loose = [&](const char* name, const Bytes& bytes) {
     change_draco("R39", name, [&](StreamParts& p) {
       p.i_frame.mesh = bytes;

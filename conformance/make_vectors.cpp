@@ -47,10 +47,14 @@ std::string TuplesCrc32(const std::vector<Tuple>& tuples) {
 std::optional<Json> Describe(const ValidVector& vector) {
   Decoder decoder;
   std::vector<DecodedFrame> frames;
+  Json segments = Json::array();
   Status status;
   for (std::span<const std::uint8_t> rest(vector.stream); status.ok() && !rest.empty();) {
     status = decoder.Send(rest);
-    for (DecodedFrame frame; status.ok() && (status = decoder.Receive(frame)).ok();) frames.push_back(frame);
+    for (DecodedFrame frame; status.ok() && (status = decoder.Receive(frame)).ok();) {
+      if (frame.segment == segments.size()) segments.push_back({frame.index, frame.positions.size()});
+      frames.push_back(frame);
+    }
     if (status.code() == StatusCode::kNeedMoreData) status = Status::Ok();
   }
   if (status.ok()) status = decoder.Finish();
@@ -68,6 +72,7 @@ std::optional<Json> Describe(const ValidVector& vector) {
                {"triangles", mesh.triangles.size()},
                {"triangles_crc32", TuplesCrc32(mesh.triangles)},
                {"coefficients_crc32", Hex(crc)}};
+  if (segments.size() > 1) json["segments"] = segments;
   if (const auto& offset = decoder.info()->offset; offset != std::array<double, 3>{}) json["offset"] = offset;
   if (!mesh.uvs.empty()) {
     json["uvs"] = mesh.uvs.size();
@@ -86,7 +91,8 @@ std::optional<Json> Describe(const ValidVector& vector) {
   if (frames.empty()) which.clear();
   which.erase(std::unique(which.begin(), which.end()), which.end());
   for (const std::size_t f : which) {
-    std::vector<std::size_t> vertices = {0, mesh.positions.size() / 2, mesh.positions.size() - 1};
+    const std::size_t count = frames[f].positions.size();
+    std::vector<std::size_t> vertices = {0, count / 2, count - 1};
     vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
     for (const std::size_t v : vertices) {
       Json row = {f, v};

@@ -12,7 +12,7 @@
 #include "codec/shape.h"
 #include "format/bytes.h"
 #include "format/frame_coder.h"
-#include "format/group_syntax.h"
+#include "format/group.h"
 #include "format/packet.h"
 #include "format/stream_index.h"
 
@@ -66,7 +66,7 @@ StreamParts Split(const Bytes& stream) {
         Require(ParseSequenceHeader(packet->payload, limits, parts.header));
         break;
       case PacketType::kIFrame:
-        Require(ParseIFrame(packet->payload, parts.header, parts.i_frame));
+        Require(ReadIFrame(packet->payload, parts.header, parts.i_frame));
         break;
       case PacketType::kGroup:
         parts.groups.push_back(packet->payload);
@@ -75,8 +75,7 @@ StreamParts Split(const Bytes& stream) {
         Require(ParseEnd(packet->payload, {}, end));
         parts.frames = end.frames;
         break;
-      case PacketType::kFrame:
-      case PacketType::kGroupEnd:
+      default:
         break;
     }
   }
@@ -89,7 +88,7 @@ void Derive(StreamParts& parts) {
   Shape shape;
   Require(DecodeDraco(parts.i_frame.mesh, parts.header, draco));
   Require(AssembleIFrame(parts.i_frame, parts.header, std::move(draco), decoded));
-  Require(BuildShape(parts.header, std::move(decoded.mesh), parts.i_frame.harmonics, parts.i_frame.samples_per_harmonic,
+  Require(BuildShape(parts.header, std::move(decoded.mesh), parts.i_frame.harmonics, parts.i_frame.handles_per_harmonic,
                      Limits{}, shape));
   parts.i_frame.fingerprint = Fingerprint(shape.basis, shape.patch_basis);
   parts.layouts = shape.layouts;
@@ -110,6 +109,30 @@ Bytes CodeGroup(const StreamParts& parts, std::uint32_t frames, std::uint32_t py
   return WriteGroup({frames, first_frame, pyramid}, range.Finish());
 }
 
+std::vector<Bytes> CodeLayeredGroup(const StreamParts& parts, const GroupSyntax& group,
+                                    const std::function<void(std::uint32_t, FrameSyntax&)>& fill) {
+  FrameCoder<RangeEncoder> coder(parts.header, parts.layouts);
+  const std::vector<FrameSlot> slots = LayeredOrder(GroupStructure(group.frames, group.pyramid), group.base_levels);
+  std::vector<FrameSyntax> frames;
+  for (const FrameSlot& slot : slots) {
+    frames.push_back({slot, {}, EmptyPlanes(parts.layouts)});
+    fill(static_cast<std::uint32_t>(frames.size() - 1), frames.back());
+  }
+  std::vector<Bytes> payloads;
+  for (const GroupLayer& layer : LayersOf(slots, group.base_levels, parts.layouts)) {
+    RangeEncoder range;
+    for (std::size_t i = layer.first; i < layer.end; ++i) {
+      const bool good = layer.has_frames() ? coder.CodeBase(range, slots[i], frames[i])
+                                           : coder.CodeLater(range, i, layer.plane, frames[i]);
+      if (!good) std::exit(1);
+    }
+    const Bytes code = range.Finish();
+    const auto number = static_cast<std::uint32_t>(payloads.size());
+    payloads.push_back(number == 0 ? WriteGroup(group, code) : WriteLayer({group.first_frame, number}, code));
+  }
+  return payloads;
+}
+
 Bytes CodeOpenGroup(const StreamParts& parts, std::uint32_t frames,
                     const std::function<void(std::uint32_t, FrameSyntax&)>& fill, std::uint32_t first_frame) {
   RecordWriter records;
@@ -127,6 +150,30 @@ Bytes CodeOpenGroup(const StreamParts& parts, std::uint32_t frames,
   }
   out.Bytes(records.End());
   return out.bytes();
+}
+
+void FillAtRandom(std::mt19937& random, const References* references, std::uint32_t index, FrameSyntax& frame) {
+  const auto residual = [&](std::uint32_t one_in, int most_bits) {
+    std::int32_t value = 0;
+    for (int bit = 0; bit < most_bits && random() % one_in == 0; ++bit) {
+      value = 2 * value + 1 + static_cast<std::int32_t>(random() % 2);
+    }
+    return random() % 2 ? value : -value;
+  };
+  if (references) {
+    frame.slot.references = *references;
+  } else if (index > 0 && random() % 2) {
+    frame.slot.references.resize(random() % 3);
+    for (std::uint32_t& r : frame.slot.references) r = random() % index;
+  }
+  if (random() % 4 == 0) return;
+  const std::uint32_t one_in = 2 + random() % 5;
+  for (std::int32_t& r : frame.rigid) r = residual(2, 9);
+  for (PlaneValues& plane : frame.planes) {
+    if (plane.empty() || random() % 3 == 0) continue;
+    for (std::int32_t& r : plane) r = residual(one_in, 8);
+    if (random() % 4 == 0) plane[random() % plane.size()] = random() % 2 ? 1 << 16 : -(1 << 16);
+  }
 }
 
 StreamParts SmallStream() {

@@ -4,10 +4,12 @@
 #include <array>
 #include <cstdint>
 #include <functional>
+#include <random>
 #include <span>
 #include <vector>
 
 #include "format/frame_syntax.h"
+#include "format/group.h"
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
 #include "format/sequence_header.h"
@@ -48,9 +50,17 @@ void AppendPacket(Bytes& stream, PacketType type, const Bytes& payload);
 Bytes CodeGroup(const StreamParts& parts, std::uint32_t frames, std::uint32_t pyramid,
                 const std::function<void(std::uint32_t, FrameSyntax&)>& fill, std::uint32_t first_frame = 0);
 
+// The same of a layered group: the payloads of its own packet and of its layers. `base_levels`: as of GroupSyntax.
+std::vector<Bytes> CodeLayeredGroup(const StreamParts& parts, const GroupSyntax& group,
+                                    const std::function<void(std::uint32_t, FrameSyntax&)>& fill);
+
 // Codes the packet of an open group and its records.
 Bytes CodeOpenGroup(const StreamParts& parts, std::uint32_t frames,
                     const std::function<void(std::uint32_t, FrameSyntax&)>& fill, std::uint32_t first_frame = 0);
+
+// Fills a frame with random residuals that no encoder would choose: of any magnitude, with any references, or with
+// `references` if that is not null. `index` is its number in coding order.
+void FillAtRandom(std::mt19937& random, const References* references, std::uint32_t index, FrameSyntax& frame);
 
 // The stream of spec.md, appendix A: four vertices and two triangles, coded without Draco, and three frames.
 StreamParts SmallStream();

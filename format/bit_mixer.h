@@ -6,42 +6,10 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "format/bit_model.h"
 #include "format/logistic.h"
 
 namespace sac {
-
-// The state of one context of a bin: the probability that the bin is 1, in 1/65536, and the number of bins it has seen
-// (spec.md 7.4).
-class AdaptiveBit {
- public:
-  // The logit of the probability, damped towards 0 (no information) while the context has seen few bins.
-  std::int32_t logit() const { return Logit(probability_) * static_cast<std::int32_t>(kConfidence[count_]) >> 8; }
-
-  void Update(bool bit) {
-    if (bit) {
-      probability_ = static_cast<std::uint16_t>(probability_ + (((65535u - probability_) * kRates[count_]) >> 16));
-    } else {
-      probability_ = static_cast<std::uint16_t>(probability_ - ((probability_ * kRates[count_]) >> 16));
-    }
-    if (count_ < kMaxSeen) ++count_;
-  }
-
- private:
-  static constexpr std::size_t kMaxSeen = 60;
-  static constexpr std::array<std::uint32_t, kMaxSeen + 1> kConfidence = [] {
-    std::array<std::uint32_t, kMaxSeen + 1> values{};
-    for (std::uint32_t n = 0; n <= kMaxSeen; ++n) values[n] = 512 * n / (2 * n + 3);
-    return values;
-  }();
-  static constexpr std::array<std::uint32_t, kMaxSeen + 1> kRates = [] {
-    std::array<std::uint32_t, kMaxSeen + 1> values{};
-    for (std::uint32_t n = 0; n <= kMaxSeen; ++n) values[n] = 655360 / (10 * n + 16);
-    return values;
-  }();
-
-  std::uint16_t probability_ = 32768;
-  std::uint16_t count_ = 0;
-};
 
 // Mixes the logits of kInputs inputs with weights in 1/65536. The weights learn from every bin how reliable each input
 // is (spec.md 7.4).
@@ -75,18 +43,18 @@ class Mixer {
 };
 
 // Codes a bin with the probability whose logit is the mean of the results of the mixers `first` and `second` on the
-// same inputs. The first kStates inputs are the logits of `states`: they are filled in here, and the states are
+// same inputs. The first kModels inputs are the logits of `models`: they are filled in here, and the models are
 // updated.
-template <class Coder, std::size_t kInputs, std::size_t kStates>
+template <class Coder, std::size_t kInputs, std::size_t kModels>
 void CodeMixed(Coder& coder, Mixer<kInputs>& first, Mixer<kInputs>& second, std::array<std::int32_t, kInputs>& inputs,
-               const std::array<AdaptiveBit*, kStates>& states, bool& bit) {
-  for (std::size_t i = 0; i < kStates; ++i) inputs[i] = states[i]->logit();
+               const std::array<BitModel*, kModels>& models, bool& bit) {
+  for (std::size_t i = 0; i < kModels; ++i) inputs[i] = models[i]->logit();
   const std::int32_t a = first.Mix(inputs), b = second.Mix(inputs);
   const std::int32_t p = std::clamp(Probability((a + b) >> 1), 24, 65536 - 24);
   coder.Decide(static_cast<std::uint32_t>(p), bit);
   first.Learn(inputs, a, bit);
   second.Learn(inputs, b, bit);
-  for (AdaptiveBit* state : states) state->Update(bit);
+  for (BitModel* model : models) model->Update(bit);
 }
 
 }  // namespace sac

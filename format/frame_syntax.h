@@ -3,7 +3,7 @@
 
 #include <cstdint>
 
-#include "format/group_structure.h"
+#include "format/group.h"
 #include "format/plane_layout.h"
 #include "format/rigid_motion.h"
 

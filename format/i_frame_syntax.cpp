@@ -138,6 +138,11 @@ bool CodeOrder(Coder& coder, const SequenceHeader& header, std::vector<std::uint
 // Codes all side information. Returns the name of the malformed element or null.
 template <class Coder>
 const char* CodeSide(Coder& coder, const SequenceHeader& header, IFrameSyntax& s) {
+  if (!s.mesh.empty()) {
+    UnsignedModels step, slope;
+    CodeUnsigned(coder, step, s.position_step);
+    CodeUnsigned(coder, slope, s.position_slope);
+  }
   if (!CodeWelds(coder, header, s.welds)) return "welds";
   CodeFlag(coder, s.has_normals);
   CodeFlag(coder, s.has_colors);
@@ -145,7 +150,7 @@ const char* CodeSide(Coder& coder, const SequenceHeader& header, IFrameSyntax& s
   if (!CodeLooseTriangles(coder, header, s.loose_triangles)) return "loose triangles";
   if (!CodeHarmonics(coder, header, s.harmonics)) return "harmonics per component";
   UnsignedModels samples;
-  CodeUnsigned(coder, samples, s.samples_per_harmonic);
+  CodeUnsigned(coder, samples, s.handles_per_harmonic);
   for (float& f : s.fingerprint) CodeFloat(coder, f);
   bool keeps_order = !s.order.empty();
   CodeFlag(coder, keeps_order);
@@ -168,37 +173,25 @@ std::vector<std::uint8_t> WriteIFrame(const IFrameSyntax& syntax, const Sequence
   ByteWriter out;
   out.Varint(static_cast<std::uint32_t>(syntax.mesh.size()));
   out.Bytes(syntax.mesh);
-  if (!syntax.mesh.empty()) {
-    out.Varint(syntax.position_step);
-    out.Varint(syntax.position_slope);
-    out.Varint(static_cast<std::uint32_t>(syntax.positions.size()));
-    out.Bytes(syntax.positions);
-  }
   RangeEncoder coder;
   IFrameSyntax copy = syntax;  // the shared body takes its elements by reference
   CodeSide(coder, header, copy);
+  syntax.positions.WriteTo(coder);
   out.Bytes(coder.Finish());
   return std::move(out.bytes());
 }
 
-Status ParseIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& header, IFrameSyntax& syntax) {
+Status ParseIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& header, IFrameSyntax& syntax,
+                   RangeDecoder& positions) {
   syntax = {};
   ByteReader reader(payload);
   const auto mesh = reader.Bytes(reader.Varint());
   if (!reader.ok()) return Status::Corrupt("I-frame: truncated mesh");
   syntax.mesh.assign(mesh.begin(), mesh.end());
-  if (!mesh.empty()) {
-    syntax.position_step = reader.Varint();
-    syntax.position_slope = reader.Varint();
-    const auto positions = reader.Bytes(reader.Varint());
-    if (!reader.ok()) return Status::Corrupt("I-frame: truncated positions");
-    syntax.positions.assign(positions.begin(), positions.end());
-  }
-  RangeDecoder coder(payload.subspan(reader.position()));
-  if (const char* element = CodeSide(coder, header, syntax)) {
+  positions = RangeDecoder(payload.subspan(reader.position()));
+  if (const char* element = CodeSide(positions, header, syntax)) {
     return Status::Corrupt(std::string("I-frame: malformed ") + element);
   }
-  if (!coder.AtEnd()) return Status::Corrupt("I-frame: wrong length");
   if (!IsPermutation(syntax.order)) return Status::Corrupt("I-frame: the vertex order is no permutation");
   return Status::Ok();
 }

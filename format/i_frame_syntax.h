@@ -7,6 +7,8 @@
 #include <vector>
 
 #include "format/grid_position.h"
+#include "format/range_coder.h"
+#include "format/recorded_bins.h"
 #include "format/sequence_header.h"
 #include "sac/limits.h"
 #include "sac/mesh.h"
@@ -31,17 +33,17 @@ struct LooseVertex {
 // and the parameters of the harmonic basis.
 struct IFrameSyntax {
   std::vector<std::uint8_t> mesh;  // a Draco stream; empty when no triangle is left to it
-  // The step of the positions of Draco's mesh, and their range code (spec.md 5.5).
+  // The step of the positions of Draco's mesh, and what they are coded by (spec.md 5.5).
   std::uint32_t position_step = 16;  // 1/16 of a grid cell
   std::uint32_t position_slope = 0;  // 1/4096 of the length of edges
-  std::vector<std::uint8_t> positions;
+  RecordedBins positions;            // to be written; ParseIFrame() leaves it empty
   std::vector<Weld> welds;
   bool has_normals = false;
   bool has_colors = false;
   std::vector<LooseVertex> loose_vertices;
   std::vector<Triangle> loose_triangles;   // vertices of triangles that Draco drops
   std::vector<std::uint32_t> harmonics;    // per component, each at least 1
-  std::uint32_t samples_per_harmonic = 0;  // 0: exact harmonics (spec.md 6.4)
+  std::uint32_t handles_per_harmonic = 0;  // 0: every vertex is a handle (spec.md 6.4.4)
   std::array<float, 2> fingerprint = {};   // of the harmonics (spec.md 6.6)
   std::vector<std::uint32_t> order;  // per vertex its index in the input; empty when the input's order is not kept
 };
@@ -51,7 +53,9 @@ bool IsPermutation(const std::vector<std::uint32_t>& order);
 
 std::vector<std::uint8_t> WriteIFrame(const IFrameSyntax& syntax, const SequenceHeader& header);
 
-// Parses what WriteIFrame() writes. Returns kCorrupt when `payload` breaks a rule of spec.md 5.
-Status ParseIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& header, IFrameSyntax& syntax);
+// Parses what WriteIFrame() writes up to the positions, whose models depend on the mesh: `positions` reads on there,
+// and refers to `payload`. Returns kCorrupt when `payload` breaks a rule of spec.md 5.
+Status ParseIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& header, IFrameSyntax& syntax,
+                   RangeDecoder& positions);
 
 }  // namespace sac

@@ -25,17 +25,23 @@ constexpr std::int32_t InterpolatedCurve(std::int32_t logit) {
   return kLogisticCurve[k] + ((kLogisticCurve[k + 1] - kLogisticCurve[k]) * (logit % 128) + 64) / 128;
 }
 
+// The place of a logit from -kMaxLogit to kMaxLogit in a table.
+constexpr std::size_t LogitIndex(std::int32_t logit) {
+  const std::int32_t index = logit + kMaxLogit;
+  return static_cast<std::size_t>(index);
+}
+
 struct LogisticTables {
   std::array<std::uint16_t, 2 * kMaxLogit + 1> probability{};
   std::array<std::int16_t, 4096> logit{};
 
   constexpr LogisticTables() {
     for (std::int32_t x = -kMaxLogit; x <= kMaxLogit; ++x) {
-      probability[static_cast<std::size_t>(x + kMaxLogit)] = static_cast<std::uint16_t>(InterpolatedCurve(x));
+      probability[LogitIndex(x)] = static_cast<std::uint16_t>(InterpolatedCurve(x));
     }
     std::int32_t x = -kMaxLogit;
     for (std::size_t i = 0; i < logit.size(); ++i) {
-      while (x < kMaxLogit && probability[static_cast<std::size_t>(x + kMaxLogit)] < 16 * i + 8) ++x;
+      while (x < kMaxLogit && probability[LogitIndex(x)] < 16 * i + 8) ++x;
       logit[i] = static_cast<std::int16_t>(x);
     }
   }
@@ -43,7 +49,7 @@ struct LogisticTables {
 extern const LogisticTables kLogisticTables;
 
 inline std::int32_t Probability(std::int32_t logit) {
-  return kLogisticTables.probability[static_cast<std::size_t>(std::clamp(logit, -kMaxLogit, kMaxLogit) + kMaxLogit)];
+  return kLogisticTables.probability[LogitIndex(std::clamp(logit, -kMaxLogit, kMaxLogit))];
 }
 
 // The least logit whose probability is at least that of the middle of the sixteen values that share p >> 4.

@@ -7,13 +7,13 @@
 
 #include "format/bytes.h"
 #include "format/crc32.h"
-#include "format/group_syntax.h"
+#include "format/group.h"
 
 namespace sac {
 
 std::vector<std::uint8_t> WritePacket(PacketType type, std::span<const std::uint8_t> payload) {
   ByteWriter out;
-  out.Varint(static_cast<std::uint32_t>(payload.size()) * 4 + static_cast<std::uint32_t>(type));
+  out.Varint(static_cast<std::uint32_t>(payload.size()) * kPacketTypes + static_cast<std::uint32_t>(type));
   out.Bytes(payload);
   out.U32(Crc32(out.bytes()));
   return std::move(out.bytes());
@@ -21,24 +21,24 @@ std::vector<std::uint8_t> WritePacket(PacketType type, std::span<const std::uint
 
 std::size_t PacketSize(std::size_t payload) {
   std::size_t size = payload + 5;
-  for (std::uint64_t tag = std::uint64_t{payload} * 4; tag >= 0x80; tag >>= 7) ++size;
+  for (std::uint64_t tag = std::uint64_t{payload} * kPacketTypes; tag >= 0x80; tag >>= 7) ++size;
   return size;
 }
 
 bool ParsePacket(std::span<const std::uint8_t> bytes, Packet& packet) {
   ByteReader reader(bytes);
   const std::uint32_t tag = reader.Varint();
-  const std::span<const std::uint8_t> payload = reader.Bytes(tag / 4);
+  const std::span<const std::uint8_t> payload = reader.Bytes(tag / kPacketTypes);
   const std::uint32_t crc = Crc32(bytes.first(reader.position()));
   if (reader.U32() != crc || !reader.ok() || reader.remaining() != 0) return false;
-  packet.type = static_cast<PacketType>(tag & 3);
+  packet.type = static_cast<PacketType>(tag % kPacketTypes);
   packet.payload.assign(payload.begin(), payload.end());
   return true;
 }
 
-std::vector<std::uint8_t> RecordWriter::Open(std::uint32_t first_frame) {
+std::vector<std::uint8_t> RecordWriter::Open(std::uint32_t first_frame, std::uint32_t segment) {
   crc_ = 0;
-  return WritePacket(PacketType::kGroup, WriteGroup({0, first_frame, 1}, {}));
+  return WritePacket(PacketType::kGroup, WriteGroup({0, first_frame, 1, segment}, {}));
 }
 
 std::vector<std::uint8_t> RecordWriter::Frame(std::span<const std::uint8_t> code) {
@@ -83,10 +83,14 @@ Status PacketReader::TakeTag() {
   const std::uint32_t tag = reader.Varint();
   if (!reader.ok()) return Status::Corrupt("malformed packet size at byte " + std::to_string(position_));
   tag_size_ = pending_.size();
-  std::uint32_t size = tag / 4;
+  std::uint32_t size = tag / kPacketTypes;
   crc_size_ = 4;
   if (!in_open_group_) {
-    type_ = static_cast<PacketType>(tag & 3);
+    type_ = static_cast<PacketType>(tag % kPacketTypes);
+    if (type_ >= PacketType::kReserved && type_ < PacketType::kSkippable) {
+      return Status::Unsupported("a packet of type " + std::to_string(tag % kPacketTypes) + " at byte " +
+                                 std::to_string(position_ - tag_size_));
+    }
   } else if (tag == 0) {
     type_ = PacketType::kGroupEnd;
     size = 0;

@@ -15,21 +15,31 @@ namespace sac {
 inline constexpr std::uint8_t kMagic[4] = {0x53, 0x41, 0x43, 0x1A};  // "SAC" and a control character
 
 enum class PacketType : std::uint8_t {
-  kHeader = 0,  // sequence header, first
-  kIFrame = 1,  // the first frame's mesh and the basis, second
+  kHeader = 0,  // sequence header, the first packet of a segment
+  kIFrame = 1,  // a segment's mesh and basis, follows its header
   kGroup = 2,   // frames
-  kEnd = 3,     // number of frames, last
+  kLayer = 3,   // a layer of the frames of the group before
+  kEnd = 4,     // number of frames, last
+  // From here to kSkippable - 1, types that no decoder may pass over, for later versions.
+  kReserved = 5,
+  // From here on, types that a decoder may pass over.
+  kSkippable = 8,
+  kMetadata = 8,  // what the clip is called, its units and so on
+  kSource = 9,    // the author's mesh as far as the stream does not hold it
   // Types of the records that follow the packet of an open group. Records have no tag.
-  kFrame = 4,     // one frame of the open group
-  kGroupEnd = 5,  // the end of the open group
+  kFrame = 16,     // one frame of the open group
+  kGroupEnd = 17,  // the end of the open group
 };
+inline constexpr std::uint32_t kPacketTypes = 16;  // that a tag has room for
+
+inline bool IsSkippable(PacketType type) { return type >= PacketType::kSkippable && type < PacketType::kFrame; }
 
 struct Packet {
   PacketType type = PacketType::kHeader;
   std::vector<std::uint8_t> payload;
 };
 
-// Returns the bytes of a packet (spec.md 3): varint(payload size * 4 + type), payload, CRC-32 of both.
+// Returns the bytes of a packet (spec.md 3): varint(payload size * 16 + type), payload, CRC-32 of both.
 std::vector<std::uint8_t> WritePacket(PacketType type, std::span<const std::uint8_t> payload);
 
 // The size in bytes of a packet whose payload has `payload` bytes.
@@ -41,8 +51,9 @@ bool ParsePacket(std::span<const std::uint8_t> bytes, Packet& packet);
 // Writes the records of an open group, one for each frame as it comes (spec.md 3.1).
 class RecordWriter {
  public:
-  // Returns the packet that opens the group whose first frame has the number `first_frame` in the clip.
-  std::vector<std::uint8_t> Open(std::uint32_t first_frame);
+  // Returns the packet that opens a group. `first_frame` is the number of its first frame in the clip, `segment` that
+  // of its segment.
+  std::vector<std::uint8_t> Open(std::uint32_t first_frame, std::uint32_t segment = 0);
   // Returns the record of a frame: varint(size + 1), the code, one byte of the CRC-32 of the group so far.
   std::vector<std::uint8_t> Frame(std::span<const std::uint8_t> code);
   // Returns the record that ends the group: varint(0), the CRC-32 of the group.
@@ -62,8 +73,9 @@ class PacketReader {
   explicit PacketReader(const Limits& limits) : limits_(limits) {}
 
   // Takes bytes from the front of `bytes` until a packet is complete or `bytes` is empty; `packet` is empty in the
-  // latter case. Returns kCorrupt when the bytes are no .sac stream, a tag is malformed or a CRC-32 is wrong, and
-  // kLimit when a packet is larger than the limit.
+  // latter case. Returns kCorrupt when the bytes are no .sac stream, a tag is malformed or a CRC-32 is wrong,
+  // kUnsupported when a packet is of a type that may not be passed over and is not known, and kLimit when a packet is
+  // larger than the limit.
   Status Read(std::span<const std::uint8_t>& bytes, std::optional<Packet>& packet);
 
   // Whether the stream could end here: no packet has begun, no group is open.

@@ -29,9 +29,10 @@ bool PacketSearch::TakeStart(const Start& start) {
   while (size < tag_bytes && (rest[size] & 0x80) != 0) ++size;
   if (size == tag_bytes) return tag_bytes == kTagBytes;  // five bytes that go on are no tag
   ByteReader reader(rest.first(size + 1));
-  const std::uint32_t tag = reader.Varint(), payload = tag / 4;
+  const std::uint32_t tag = reader.Varint(), payload = tag / kPacketTypes;
   const bool fits = reader.ok() && payload > 0 && payload <= max_payload_;
-  if (fits && static_cast<PacketType>(tag & 3) != PacketType::kIFrame) {
+  const auto type = static_cast<PacketType>(tag % kPacketTypes);
+  if (fits && (type == PacketType::kHeader || type == PacketType::kGroup || type == PacketType::kEnd)) {
     candidates_.push({start.begin, start.begin + PacketSize(payload), start.crc_before});
   }
   return true;

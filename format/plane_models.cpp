@@ -10,28 +10,19 @@
 namespace sac {
 namespace {
 
-// What the mixers begin with, in 1/64: learnt from clips that are not among those reported (docs/decisions.md).
+// What the mixers of each kind of bin begin with, in 1/64: learnt from clips that are not among those reported
+// (docs/decisions.md).
 using Weights = std::array<std::int32_t, ResidualContext::kStates + ResidualContext::kFeatures>;
-struct PlaneWeights {
-  std::array<Weights, 3> nonzero;  // by level
-  Weights second;                  // whether the magnitude is above 1
-  Weights further;                 // above 2 and so on
-};
-constexpr PlaneWeights kMotionWeights = {{{{14, 16, 20, 25, 27, 30, 41, 37, -34, 18, 50, -40},
-                                           {23, 22, 18, 9, 17, 32, 113, 26, 0, -6, 64, -74},
-                                           {26, 21, -1, 6, 12, 66, 158, -3, 4, -11, 72, -73}}},
-                                         {19, 14, 9, 15, 4, 14, -6, 16, 3, 8, 32, -32},
-                                         {8, 2, -4, 14, 6, 18, -2, 16, 8, 4, 12, -55}};
-constexpr PlaneWeights kDisplacementWeights = {{{{9, 7, 20, 12, 9, 15, 12, 19, -21, 10, 39, -11},
-                                                 {26, 12, 16, 14, 7, 17, 42, 13, 8, 3, 34, -22},
-                                                 {36, 11, 9, 12, 11, 27, 101, 3, 1, 6, 19, -34}}},
-                                               {22, 14, 21, 8, 2, 7, -20, 20, -8, 2, 13, -30},
-                                               {12, 9, 14, 6, -8, 1, -23, 26, -5, -7, 6, -42}};
-constexpr PlaneWeights kDetailWeights = {{{{21, 21, 29, -12, -14, 8, 55, 38, 13, -6, 43, -53},
-                                           {42, 13, 16, -7, -13, 11, 51, 7, 30, -11, 47, -55},
-                                           {40, 22, 8, 2, -7, 5, 56, 2, 15, 13, 20, -13}}},
-                                         {45, 27, 2, 5, 10, 1, 12, 8, 5, -1, 25, -11},
-                                         {31, 16, 5, 5, -11, 5, -30, 13, 6, 1, 19, -17}};
+using PlaneWeights = std::array<Weights, 3>;
+constexpr PlaneWeights kMotionWeights = {{{23, 22, 18, 9, 17, 32, 113, 26, 0, -6, 64, -74},
+                                          {19, 14, 9, 15, 4, 14, -6, 16, 3, 8, 32, -32},
+                                          {8, 2, -4, 14, 6, 18, -2, 16, 8, 4, 12, -55}}};
+constexpr PlaneWeights kDisplacementWeights = {{{26, 12, 16, 14, 7, 17, 42, 13, 8, 3, 34, -22},
+                                                {22, 14, 21, 8, 2, 7, -20, 20, -8, 2, 13, -30},
+                                                {12, 9, 14, 6, -8, 1, -23, 26, -5, -7, 6, -42}}};
+constexpr PlaneWeights kDetailWeights = {{{42, 13, 16, -7, -13, 11, 51, 7, 30, -11, 47, -55},
+                                          {45, 27, 2, 5, 10, 1, 12, 8, 5, -1, 25, -11},
+                                          {31, 16, 5, 5, -11, 5, -30, 13, 6, 1, 19, -17}}};
 constexpr std::array<const PlaneWeights*, kPlanes> kWeights = {&kMotionWeights, &kDisplacementWeights, &kDetailWeights,
                                                                &kDetailWeights};
 constexpr std::int32_t kWeightUnit = 1024;
@@ -48,13 +39,10 @@ PlaneModels::PlaneModels(std::size_t plane, const PlaneLayout& layout)
     : contexts(layout), sign_(SignMixer::Inputs{kSignWeight * kWeightUnit, kSignWeight * kWeightUnit}) {
   for (std::size_t i = 0; i < states_.size(); ++i) states_[i].resize(contexts.sizes()[i]);
   for (std::size_t i = 0; i < sign_states_.size(); ++i) sign_states_[i].resize(ResidualContexts::kSignContexts[i]);
-  const PlaneWeights& weights = *kWeights[plane];
-  for (std::size_t kind = 0; kind < kKinds; ++kind) {
-    const auto at_level = [&](std::size_t level) {
-      return ResidualMixer(Scaled(kind == 0 ? weights.nonzero[level] : kind == 1 ? weights.second : weights.further));
-    };
-    for (std::size_t level = 0; level < ResidualContexts::kCoarseLevels; ++level) by_level_.push_back(at_level(level));
-    by_activity_.insert(by_activity_.end(), ResidualContexts::kActivities, at_level(1));
+  for (const Weights& weights : *kWeights[plane]) {
+    const ResidualMixer mixer(Scaled(weights));
+    by_level_.insert(by_level_.end(), ResidualContexts::kLevels, mixer);
+    by_activity_.insert(by_activity_.end(), ResidualContexts::kActivities, mixer);
   }
   sign_by_level_.assign(ResidualContexts::kLevels, sign_);
 }
@@ -62,11 +50,11 @@ PlaneModels::PlaneModels(std::size_t plane, const PlaneLayout& layout)
 template <class Coder>
 void PlaneModels::CodeBin(Coder& coder, const ResidualContext& context, std::size_t bin, bool& value) {
   const std::size_t kind = std::min(bin, kKinds - 1);
-  std::array<AdaptiveBit*, ResidualContext::kStates> states;
+  std::array<BitModel*, ResidualContext::kStates> states;
   for (std::size_t i = 0; i < states.size(); ++i) states[i] = &states_[i][context.states[i]][bin];
   ResidualMixer::Inputs inputs;
   std::copy(context.features.begin(), context.features.end(), inputs.begin() + states.size());
-  CodeMixed(coder, by_level_[kind * ResidualContexts::kCoarseLevels + context.coarse_level],
+  CodeMixed(coder, by_level_[kind * ResidualContexts::kLevels + context.level],
             by_activity_[kind * ResidualContexts::kActivities + context.activity], inputs, states, value);
 }
 

@@ -27,12 +27,12 @@ class PlaneModels {
  private:
   static constexpr std::size_t kInputs = ResidualContext::kStates + ResidualContext::kFeatures;
   static constexpr std::size_t kUnary = 14;  // bins of a magnitude that have contexts
-  static constexpr std::size_t kKinds = 6;   // of bins that have mixers of their own: zero or not, then unary bins
+  static constexpr std::size_t kKinds = 3;   // of bins that have mixers of their own: above 0, 1, and 2 or more
 
   using ResidualMixer = Mixer<kInputs>;
   using SignMixer = Mixer<2>;
   // The bins of one residual that share a context: first whether it is zero, then the unary bins.
-  using Bins = std::array<AdaptiveBit, 1 + kUnary>;
+  using Bins = std::array<BitModel, 1 + kUnary>;
 
   template <class Coder>
   void CodeBin(Coder& coder, const ResidualContext& context, std::size_t bin, bool& value);
@@ -40,7 +40,7 @@ class PlaneModels {
   void CodeSign(Coder& coder, const ResidualContext& context, bool& negative);
 
   std::array<std::vector<Bins>, ResidualContext::kStates> states_;
-  std::array<std::vector<AdaptiveBit>, 2> sign_states_;
+  std::array<std::vector<BitModel>, 2> sign_states_;
   std::vector<ResidualMixer> by_level_;     // kinds x levels
   std::vector<ResidualMixer> by_activity_;  // kinds x activities
   std::vector<SignMixer> sign_by_level_;

@@ -46,44 +46,52 @@ bool Predictor::Predicts(std::size_t plane) const {
   return plane != kCorrection && !header_.references_previous();
 }
 
-const FrameCoefficients* Predictor::FrameAt(std::int64_t display) const {
-  for (std::size_t i = 0; i < frames_.size(); ++i) {
+const FrameCoefficients* Predictor::FrameAt(std::int64_t display, std::size_t count) const {
+  for (std::size_t i = 0; i < count; ++i) {
     if (displays_[i] == display) return &frames_[i];
   }
   return nullptr;
 }
 
-ReferenceFrames Predictor::FindReferences(const FrameSlot& slot) const {
+ReferenceFrames Predictor::FindReferences(const FrameSlot& slot, std::size_t index) const {
   if (slot.references.empty()) return {};
   const std::uint32_t a = slot.references[0], b = slot.references.back();
   ReferenceFrames frames{&frames_[a], &frames_[b], nullptr, nullptr, slot.references.size() == 1};
   const std::int64_t from = displays_[a], to = frames.one ? slot.display : displays_[b];
-  frames.before = FrameAt(2 * from - to);
-  if (!frames.one) frames.after = FrameAt(2 * to - from);
+  frames.before = FrameAt(2 * from - to, index);
+  if (!frames.one) frames.after = FrameAt(2 * to - from, index);
   return frames;
 }
 
-FrameCoefficients Predictor::Predict(const FrameSlot& slot) const {
-  if (slot.references.empty()) return {{}, zeros_};
-  const ReferenceFrames frames = FindReferences(slot);
-  FrameCoefficients prediction{frames.first->rigid, zeros_};
-  if (slot.references.size() == 2) Mean(prediction.rigid, frames.second->rigid);
-  for (std::size_t p = 0; p < kPlanes; ++p) {
-    if (!Predicts(p)) continue;
-    PlaneValues& values = prediction.planes[p];
-    values = frames.first->planes[p];
-    if (slot.references.size() < 2) continue;
-    if (slot.level >= kBendingLevel && (p == kMotion || p == kDisplacement)) {
-      const PlaneValues& second = frames.second->planes[p];
-      for (std::size_t i = 0; i < values.size(); ++i) {
-        const std::int64_t sum = 8 * (std::int64_t{values[i]} + second[i]) + frames.Bend(p, i);
-        values[i] = static_cast<std::int32_t>((sum + 8) >> 4);
-      }
-    } else {
-      Mean(values, frames.second->planes[p]);
-    }
+void Predictor::PredictPlane(const FrameSlot& slot, const ReferenceFrames& frames, std::size_t plane,
+                             PlaneValues& values) const {
+  if (slot.references.empty() || !Predicts(plane)) return;
+  values = frames.first->planes[plane];
+  if (slot.references.size() < 2) return;
+  const PlaneValues& second = frames.second->planes[plane];
+  if (slot.level < kBendingLevel || (plane != kMotion && plane != kDisplacement)) return Mean(values, second);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const std::int64_t sum = 8 * (std::int64_t{values[i]} + second[i]) + frames.Bend(plane, i);
+    values[i] = static_cast<std::int32_t>((sum + 8) >> 4);
   }
+}
+
+FrameCoefficients Predictor::Predict(const FrameSlot& slot) const {
+  FrameCoefficients prediction{{}, zeros_};
+  if (slot.references.empty()) return prediction;
+  const ReferenceFrames frames = FindReferences(slot, frames_.size());
+  prediction.rigid = frames.first->rigid;
+  if (slot.references.size() == 2) Mean(prediction.rigid, frames.second->rigid);
+  for (std::size_t p = 0; p < kPlanes; ++p) PredictPlane(slot, frames, p, prediction.planes[p]);
   return prediction;
+}
+
+bool Predictor::AddPlane(std::size_t index, const FrameSyntax& frame, std::size_t plane) {
+  PlaneValues values = zeros_[plane];
+  PredictPlane(frame.slot, FindReferences(frame.slot, index), plane, values);
+  const bool good = AddInto(values, frame.planes[plane], LevelStep(header_, plane, frame.slot.level));
+  frames_[index].planes[plane] = std::move(values);
+  return good;
 }
 
 bool Predictor::Add(const FrameSyntax& frame) {

@@ -52,9 +52,12 @@ class Predictor {
 
   // From zero, one or two of the frames added, whose indices in coding order the slot has.
   FrameCoefficients Predict(const FrameSlot& slot) const;
-  ReferenceFrames FindReferences(const FrameSlot& slot) const;
+  // The references of a frame at `slot`, of which `index` frames come before it in coding order.
+  ReferenceFrames FindReferences(const FrameSlot& slot, std::size_t index) const;
   // Appends prediction plus residual, the next frame in coding order. False when a sum leaves the range of spec.md 6.3.
   bool Add(const FrameSyntax& frame);
+  // Does the same with one plane of frame number `index` in coding order, which has been added with zeros there.
+  bool AddPlane(std::size_t index, const FrameSyntax& frame, std::size_t plane);
 
   const std::vector<FrameCoefficients>& frames() const { return frames_; }
   std::vector<FrameCoefficients> TakeFrames() { return std::move(frames_); }
@@ -62,8 +65,10 @@ class Predictor {
  private:
   // Whether a plane is predicted at all.
   bool Predicts(std::size_t plane) const;
-  // The frame shown at a time within the group, if it is coded.
-  const FrameCoefficients* FrameAt(std::int64_t display) const;
+  // The frame shown at a time within the group, if it is one of the first `count` in coding order.
+  const FrameCoefficients* FrameAt(std::int64_t display, std::size_t count) const;
+  // Adds the prediction of a plane to zeros.
+  void PredictPlane(const FrameSlot& slot, const ReferenceFrames& frames, std::size_t plane, PlaneValues& values) const;
 
   SequenceHeader header_;
   FramePlanes zeros_;

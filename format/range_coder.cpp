@@ -2,23 +2,14 @@
 #include "format/range_coder.h"
 
 #include <algorithm>
-#include <array>
 
 namespace sac {
 namespace {
 
 constexpr std::uint32_t kTop = 1u << 24;
-constexpr std::uint32_t kYoung = 127;  // from this count on both rates are constant
 
-// spec.md 7.2: the n-th bin moves an estimator by 1 / (n + 1.5), but at least by its own rate.
-constexpr std::array<std::uint32_t, kYoung + 1> Rates(std::uint32_t floor) {
-  std::array<std::uint32_t, kYoung + 1> rates{};
-  for (std::uint32_t n = 0; n <= kYoung; ++n) rates[n] = std::max(131072 / (2 * n + 3), floor);
-  return rates;
-}
-
-// The end of a code: the multiple of the greatest power of two among the integers from `low` to `low` + `range` - 1. It
-// is unique, since of two neighbouring multiples of a power of two one is a multiple of the next power.
+// The multiple of the greatest power of two among the integers from `low` to `low` + `range` - 1, with which a code
+// ends in the fewest bytes (non-normative).
 std::uint64_t RoundestBetween(std::uint32_t low, std::uint32_t range) {
   for (int bits = 32;; --bits) {
     const std::uint64_t unit = std::uint64_t{1} << bits, value = (low + unit - 1) / unit * unit;
@@ -26,22 +17,7 @@ std::uint64_t RoundestBetween(std::uint32_t low, std::uint32_t range) {
   }
 }
 
-constexpr auto kFast = Rates(4096);  // 1/16
-constexpr auto kSlow = Rates(512);   // 1/128
-
 }  // namespace
-
-void BitModel::Update(bool bit) {
-  // All values are below 2^16 and all rates below 2^16, so the products fit 32 bits.
-  if (bit) {
-    fast_ += ((65535 - fast_) * kFast[count_]) >> 16;
-    slow_ += ((65535 - slow_) * kSlow[count_]) >> 16;
-  } else {
-    fast_ -= (fast_ * kFast[count_]) >> 16;
-    slow_ -= (slow_ * kSlow[count_]) >> 16;
-  }
-  if (count_ < kYoung) ++count_;
-}
 
 void RangeEncoder::Narrow(std::uint32_t offset, std::uint32_t range) {
   const std::uint32_t before = low_;
@@ -68,7 +44,7 @@ void RangeEncoder::Split(std::uint32_t bound, bool bit) {
 }
 
 void RangeEncoder::Bit(BitModel& model, bool& bit) {
-  Split((range_ >> 15) * model.probability(), bit);
+  Decide(model.probability(), bit);
   model.Update(bit);
 }
 
@@ -96,11 +72,7 @@ RangeDecoder::RangeDecoder(std::span<const std::uint8_t> bytes) : bytes_(bytes) 
 bool RangeDecoder::AtEnd() const {
   if (!ok() || position_ < bytes_.size()) return false;
   // An encoder leaves out the zeros among the last four bytes.
-  if (bytes_.size() + 4 > position_ && !bytes_.empty() && bytes_.back() == 0) return false;
-  std::uint32_t last = 0;
-  for (std::size_t i = position_ - 4; i < position_; ++i) last = (last << 8) | (i < bytes_.size() ? bytes_[i] : 0);
-  const std::uint32_t low = last - code_;
-  return std::uint64_t{low} + code_ == RoundestBetween(low, range_);
+  return position_ == bytes_.size() + 4 || bytes_.back() != 0;
 }
 
 bool RangeDecoder::IsCertain() const {
@@ -129,7 +101,7 @@ bool RangeDecoder::Split(std::uint32_t bound) {
 }
 
 void RangeDecoder::Bit(BitModel& model, bool& bit) {
-  bit = Split((range_ >> 15) * model.probability());
+  Decide(model.probability(), bit);
   model.Update(bit);
 }
 

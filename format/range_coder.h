@@ -7,24 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "format/bit_model.h"
+
 namespace sac {
-
-// Estimates the probability that a bin is 1 as the mean of a fast and a slow estimator. Both adapt faster while they
-// have seen few bins (spec.md 7.2).
-class BitModel {
- public:
-  // The probability in 1/32768, from 8 to 32760.
-  std::uint32_t probability() const {
-    const std::uint32_t p = (fast_ + slow_) >> 2;
-    return p < 8 ? 8 : p > 32760 ? 32760 : p;
-  }
-  void Update(bool bit);
-
- private:
-  std::uint32_t fast_ = 32768;  // in 1/65536
-  std::uint32_t slow_ = 32768;
-  std::uint32_t count_ = 0;
-};
 
 // A binary range encoder with 32 bits of state (spec.md 7.1). Encoder and decoder have the same calls, which write or
 // read their argument, so that one template per syntax element serves both directions.
@@ -32,6 +17,7 @@ class RangeEncoder {
  public:
   static constexpr bool kDecodes = false;
 
+  // Codes a bin by `model` and updates the model.
   void Bit(BitModel& model, bool& bit);
   // Codes a bin that is 1 with a probability of p / 65536; `p` is from 1 to 65535.
   void Decide(std::uint32_t p, bool& bit);
@@ -68,8 +54,7 @@ class RangeDecoder {
   void Decide(std::uint32_t p, bool& bit);
   void Raw(std::uint32_t& value, int count);
   bool ok() const { return position_ <= bytes_.size() + 4; }
-  // Whether the code ends where the bytes do and in the way in which an encoder ends it (spec.md 7.1), so that no other
-  // bytes mean the same.
+  // Whether the code ends where the bytes do (spec.md 7.1).
   bool AtEnd() const;
   // Whether everything read so far is the same for any bytes that may follow. In a code that is cut off, everything
   // after that point is made up.

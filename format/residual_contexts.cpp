@@ -7,13 +7,14 @@
 #include "format/logistic.h"
 
 namespace sac {
+
+constexpr LogisticTables kLogisticTables;
+
 namespace {
 
 constexpr std::size_t kRows = 1024;  // with contexts of their own
 
-std::uint32_t Magnitude(std::int32_t residual) {
-  return static_cast<std::uint32_t>(std::min(std::abs(residual), 1 << 15));
-}
+std::uint32_t Magnitude(std::int32_t residual) { return static_cast<std::uint32_t>(std::abs(residual)); }
 
 int Sign(std::int64_t value) { return value > 0 ? 1 : value < 0 ? -1 : 0; }
 
@@ -31,15 +32,13 @@ ResidualContexts::ResidualContexts(const PlaneLayout& layout)
       magnitudes_(layout.size() + 4 * layout.channels),
       signs_(layout.size() + layout.channels) {
   const std::size_t rows = std::min(layout.row_classes.size(), kRows);
-  sizes_ = {20 * kLevels * 2,    16 * 14,         24 * channels_ * kLevels, rows * kCoarseLevels,
-            channels_ * kLevels, rows * channels_};
+  sizes_ = {20 * kLevels * 2, 16 * 14, 24 * channels_ * kLevels, rows * kLevels, channels_ * kLevels, rows * channels_};
 }
 
 void ResidualContexts::Start(std::uint32_t level, std::int32_t step, std::size_t plane,
                              const ReferenceFrames& references, std::span<const std::int32_t> first,
                              std::span<const std::int32_t> second) {
   level_ = std::min<std::size_t>(level, kLevels - 1);
-  coarse_level_ = std::min<std::size_t>(level, kCoarseLevels - 1);
   step_ = step;
   next_ = 0;
   const std::size_t size = places_.size();
@@ -54,7 +53,7 @@ void ResidualContexts::Start(std::uint32_t level, std::int32_t step, std::size_t
     place.around = 4 * here + 2 * ((has_above ? both(i - channels_) : 0) + (has_below ? both(i + channels_) : 0));
     // All of these are 0 most often.
     const auto recent = static_cast<std::uint32_t>(recent_[i]);
-    if (recent > 0) place.recent = Class(16 * recent / unsigned_step / 4, 19);
+    if (recent > 0) place.recent = Class(4 * recent / unsigned_step, 19);
     const auto beside =
         static_cast<std::uint32_t>((has_above ? recent_[i - channels_] : 0) + (has_below ? recent_[i + channels_] : 0));
     if (recent + beside > 0) place.recent_around = Class((16 * recent + 4 * beside) / unsigned_step, 63);
@@ -63,8 +62,7 @@ void ResidualContexts::Start(std::uint32_t level, std::int32_t step, std::size_t
     if (!references.first) continue;
     const std::int64_t a = references.first->planes[plane][i], b = references.second->planes[plane][i];
     if (a != b) {
-      const auto spread = static_cast<std::uint32_t>(std::min<std::int64_t>(std::abs(a - b), 1 << 26));
-      place.spread = Class(16 * spread / unsigned_step, 63);
+      place.spread = Class(static_cast<std::uint32_t>(16 * std::abs(a - b) / step), 63);
     }
     const std::int64_t bend = references.Bend(plane, i);
     if (bend != 0) {
@@ -90,7 +88,7 @@ ResidualContext ResidualContexts::Next() {
   context.states = {(place.recent * kLevels + level_) * 2 + (place.touched ? 1 : 0),
                     Class(near / 3, 15) * std::size_t{14} + Class(before / 6, 13),
                     (layout_.row_classes[row] * channels_ + channel) * kLevels + level_,
-                    own_row * kCoarseLevels + coarse_level_,
+                    own_row * kLevels + level_,
                     channel * kLevels + level_,
                     own_row * channels_ + channel};
   context.features = {256,
@@ -100,11 +98,10 @@ ResidualContext ResidualContexts::Next() {
                       feature(place.bend, 256),
                       128 * static_cast<std::int32_t>(level_) - 256};
   context.level = level_;
-  context.coarse_level = coarse_level_;
   context.activity = Class((near + place.around + before) / 2, kActivities - 1);
   const auto sign_above = static_cast<std::size_t>(signs_[i] + 1);
   context.sign_states = {place.bend_sign * kLevels + level_,
-                         (place.reference_sign * std::size_t{3} + sign_above) * kCoarseLevels + coarse_level_};
+                         (place.reference_sign * std::size_t{3} + sign_above) * kLevels + level_};
   return context;
 }
 

@@ -18,7 +18,7 @@ struct ResidualContext {
 
   std::array<std::size_t, kStates> states;       // the context of each kind
   std::array<std::int32_t, kFeatures> features;  // on the scale of logits
-  std::size_t level, coarse_level;               // at most 4, 2
+  std::size_t level;                             // at most 4
   std::size_t activity;                          // 0..23
   std::array<std::size_t, 2> sign_states;        // the contexts of the sign
 };
@@ -27,8 +27,8 @@ struct ResidualContext {
 class ResidualContexts {
  public:
   static constexpr std::size_t kActivities = 24;
-  static constexpr std::size_t kLevels = 5, kCoarseLevels = 3;
-  static constexpr std::array<std::size_t, 2> kSignContexts = {17 * kLevels, 9 * kCoarseLevels};
+  static constexpr std::size_t kLevels = 5;
+  static constexpr std::array<std::size_t, 2> kSignContexts = {17 * kLevels, 9 * kLevels};
 
   explicit ResidualContexts(const PlaneLayout& layout);
 
@@ -62,7 +62,7 @@ class ResidualContexts {
   PlaneLayout layout_;
   std::size_t channels_;
   std::array<std::size_t, ResidualContext::kStates> sizes_;
-  std::size_t level_ = 0, coarse_level_ = 0;
+  std::size_t level_ = 0;
   std::int32_t step_ = 1;
   std::vector<Place> places_;
   std::vector<std::int32_t> recent_;       // mean magnitude of frames before, in 1/64 of a step of level 0

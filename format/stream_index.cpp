@@ -18,6 +18,11 @@ std::vector<std::uint8_t> WriteEnd(const EndSyntax& end) {
   out.Varint(end.frames);
   if (end.index) {
     out.Varint(end.index->first_group);
+    out.Varint(static_cast<std::uint32_t>(end.index->segments.size()));
+    for (const StreamIndex::Segment& segment : end.index->segments) {
+      out.Varint(segment.groups);
+      out.Varint(segment.start);
+    }
     for (const StreamIndex::Group& group : end.index->groups) {
       out.Varint(group.bytes);
       out.Varint(group.frames);
@@ -35,7 +40,16 @@ Status ParseEnd(std::span<const std::uint8_t> payload, const Limits& limits, End
   if (reader.remaining() == 0) return Status::Ok();
   StreamIndex& index = end.index.emplace();
   index.first_group = reader.Varint();
-  std::uint64_t frames = 0;
+  const std::uint32_t segments = reader.Varint();
+  std::uint64_t frames = 0, before_last = 0;
+  for (std::uint32_t i = 0; i < segments && reader.ok(); ++i) {
+    StreamIndex::Segment& segment = index.segments.emplace_back();
+    segment.groups = reader.Varint();
+    segment.start = reader.Varint();
+    before_last += segment.groups;
+    if (segment.groups == 0) return Status::Corrupt("end: a segment without groups");
+    if (index.segments.size() * kIndexMemory > limits.memory) return Status::Limit("an index larger than the limit");
+  }
   while (reader.ok() && reader.remaining() > 4) {
     StreamIndex::Group group;
     group.bytes = reader.Varint();
@@ -46,12 +60,13 @@ Status ParseEnd(std::span<const std::uint8_t> payload, const Limits& limits, End
   }
   const std::uint32_t size = reader.U32();
   if (!reader.ok() || reader.remaining() != 0) return Status::Corrupt("end: malformed index");
-  if (size != PacketSize(payload.size()) || frames != end.frames) return Status::Corrupt("end: a wrong index");
+  const bool complete = size == PacketSize(payload.size()) && frames == end.frames;
+  if (!complete || (segments > 0 && before_last >= index.groups.size())) return Status::Corrupt("end: a wrong index");
   return Status::Ok();
 }
 
 Status ReadIndex(std::span<const std::uint8_t> tail, const Limits& limits, StreamIndex& index, std::size_t& needed) {
-  const Status none = Status::InvalidArgument("the stream has no index, or is not whole");
+  Status none = Status::InvalidArgument("the stream has no index, or is not whole");
   needed = kStreamTail;
   if (tail.size() < kStreamTail) return Status::NeedMoreData();
   ByteReader last(tail.last(kStreamTail));

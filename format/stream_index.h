@@ -19,7 +19,15 @@ struct StreamIndex {
     bool operator==(const Group&) const = default;
   };
 
+  // A segment after the first.
+  struct Segment {
+    std::uint32_t groups = 0;  // from the first group of the segment before to its own
+    std::uint32_t start = 0;   // bytes from its sequence header to its first group's packet
+    bool operator==(const Segment&) const = default;
+  };
+
   std::uint32_t first_group = 0;  // bytes before the first group's packet
+  std::vector<Segment> segments;
   std::vector<Group> groups;
 
   bool operator==(const StreamIndex&) const = default;

@@ -15,13 +15,20 @@ namespace sac {
 void StreamWriter::Start(std::span<const std::uint8_t> header, std::span<const std::uint8_t> i_frame) {
   header_ = WritePacket(PacketType::kHeader, header);
   i_frame_ = WritePacket(PacketType::kIFrame, i_frame);
-  Append(kMagic, &StreamBytes::header);
+  if (segments_.empty()) Append(kMagic, &StreamBytes::header);
+  if (!segments_.empty() && segments_.back().first_group == group_begins_.size()) segments_.pop_back();
+  segments_.push_back({group_begins_.size(), written_});
   Append(header_, &StreamBytes::header);
   Append(i_frame_, &StreamBytes::i_frame);
 }
 
+void StreamWriter::Skippable(PacketType type, std::span<const std::uint8_t> payload) {
+  Append(WritePacket(type, payload), &StreamBytes::header);
+}
+
 void StreamWriter::BeginGroup() {
-  if (repeat_start_ != 0 && !group_begins_.empty() && group_begins_.size() % repeat_start_ == 0) {
+  const std::size_t in_segment = group_begins_.size() - segments_.back().first_group;
+  if (repeat_start_ != 0 && in_segment > 0 && in_segment % repeat_start_ == 0) {
     Append(header_, &StreamBytes::header);
     Append(i_frame_, &StreamBytes::i_frame);
   }
@@ -29,10 +36,15 @@ void StreamWriter::BeginGroup() {
   group_frames_.push_back(0);
 }
 
-void StreamWriter::Group(const GroupSyntax& group, std::span<const std::uint8_t> code, const FrameBits& bits) {
+void StreamWriter::Group(GroupSyntax group, std::span<const std::vector<std::uint8_t>> codes, const FrameBits& bits) {
   BeginGroup();
   const double before = sizes_.side;
-  Append(WritePacket(PacketType::kGroup, WriteGroup(group, code)), &StreamBytes::side);
+  group.first_frame = frames_;
+  group.segment = segment();
+  Append(WritePacket(PacketType::kGroup, WriteGroup(group, codes[0])), &StreamBytes::side);
+  for (std::uint32_t i = 1; i < codes.size(); ++i) {
+    Append(WritePacket(PacketType::kLayer, WriteLayer({group.first_frame, i}, codes[i])), &StreamBytes::side);
+  }
   Account(bits, before);
   group_frames_.back() = group.frames;
   frames_ += group.frames;
@@ -40,7 +52,7 @@ void StreamWriter::Group(const GroupSyntax& group, std::span<const std::uint8_t>
 
 void StreamWriter::OpenGroup() {
   BeginGroup();
-  Append(records_.Open(frames_), &StreamBytes::side);
+  Append(records_.Open(frames_, segment()), &StreamBytes::side);
 }
 
 void StreamWriter::Frame(std::span<const std::uint8_t> code, const FrameBits& bits) {
@@ -58,6 +70,11 @@ void StreamWriter::End() {
   if (wants_index_ && group_begins_.size() > 1 && written_ - group_begins_.front() <= 0xffffffffu) {
     StreamIndex& index = end.index.emplace();
     index.first_group = static_cast<std::uint32_t>(group_begins_.front());
+    for (std::size_t i = 1; i < segments_.size() && segments_[i].first_group < group_begins_.size(); ++i) {
+      const std::size_t first = segments_[i].first_group;
+      index.segments.push_back({static_cast<std::uint32_t>(first - segments_[i - 1].first_group),
+                                static_cast<std::uint32_t>(group_begins_[first] - segments_[i].start)});
+    }
     for (std::size_t i = 0; i < group_begins_.size(); ++i) {
       const std::uint64_t next = i + 1 < group_begins_.size() ? group_begins_[i + 1] : written_;
       index.groups.push_back({static_cast<std::uint32_t>(next - group_begins_[i]), group_frames_[i]});

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "format/frame_coder.h"
-#include "format/group_syntax.h"
+#include "format/group.h"
 #include "format/packet.h"
 #include "sac/stream_info.h"
 
@@ -19,9 +19,13 @@ class StreamWriter {
   // `repeat_start`-th group, never when it is 0.
   StreamWriter(bool index, std::uint32_t repeat_start) : wants_index_(index), repeat_start_(repeat_start) {}
 
+  // Begins the stream, or the next segment of it. Not within an open group.
   void Start(std::span<const std::uint8_t> header, std::span<const std::uint8_t> i_frame);
-  // Appends a group with the range code `code`. `bits` are the bits of its planes.
-  void Group(const GroupSyntax& group, std::span<const std::uint8_t> code, const FrameBits& bits);
+  // Appends a packet of a type that decoders may pass over. Not within an open group.
+  void Skippable(PacketType type, std::span<const std::uint8_t> payload);
+  // Appends a group of `group.frames` frames. `codes` are the range codes of the group's own packet and of its layers.
+  // `bits` are the bits of its planes. The writer sets the numbers of first frame and segment.
+  void Group(GroupSyntax group, std::span<const std::vector<std::uint8_t>> codes, const FrameBits& bits);
   // Begins a group whose frames come one by one, until CloseGroup().
   void OpenGroup();
   void Frame(std::span<const std::uint8_t> code, const FrameBits& bits);
@@ -29,6 +33,7 @@ class StreamWriter {
   void End();
 
   std::uint32_t frames() const { return frames_; }
+  std::size_t groups() const { return group_begins_.size(); }
   const StreamBytes& sizes() const { return sizes_; }
   // Returns the bytes that have been written since the last call.
   std::vector<std::uint8_t> TakeBytes();
@@ -38,6 +43,8 @@ class StreamWriter {
   // Moves whole bytes of what was appended last from the side information to the planes, as `bits` says.
   void Account(const FrameBits& bits, double side_before);
   void BeginGroup();
+  // The number of the segment that groups belong to now.
+  std::uint32_t segment() const { return static_cast<std::uint32_t>(segments_.size() - 1); }
 
   bool wants_index_;
   std::uint32_t repeat_start_;
@@ -47,6 +54,11 @@ class StreamWriter {
   std::vector<std::uint8_t> header_, i_frame_;  // packets
   std::vector<std::uint64_t> group_begins_;
   std::vector<std::uint32_t> group_frames_;
+  struct Segment {
+    std::size_t first_group;  // index of its first group, or of the next when it has none yet
+    std::uint64_t start;      // byte of its sequence header
+  };
+  std::vector<Segment> segments_;
   std::uint32_t frames_ = 0;
   RecordWriter records_;
 };

@@ -40,6 +40,26 @@ EdgeRange EdgesOf(const EdgeList& edges, std::uint32_t first, std::uint32_t coun
   return {static_cast<std::size_t>(begin - edges.ends.begin()), static_cast<std::size_t>(end - begin)};
 }
 
+EdgeGraph BuildEdgeGraph(std::uint32_t vertices, const EdgeList& list) {
+  EdgeGraph graph;
+  graph.offsets.assign(vertices + 1, 0);
+  for (const auto& ends : list.ends) {
+    for (const std::uint32_t v : ends) ++graph.offsets[v + 1];
+  }
+  for (std::uint32_t v = 0; v < vertices; ++v) graph.offsets[v + 1] += graph.offsets[v];
+  graph.neighbours.resize(graph.offsets[vertices]);
+  graph.edges.resize(graph.offsets[vertices]);
+  std::vector<std::uint32_t> next(graph.offsets.begin(), graph.offsets.end() - 1);
+  for (std::uint32_t e = 0; e < list.ends.size(); ++e) {
+    const auto [a, b] = list.ends[e];
+    graph.neighbours[next[a]] = b;
+    graph.edges[next[a]++] = e;
+    graph.neighbours[next[b]] = a;
+    graph.edges[next[b]++] = e;
+  }
+  return graph;
+}
+
 VertexGraph BuildGraph(std::uint32_t vertices, std::span<const Triangle> triangles) {
   VertexGraph graph;
   graph.offsets.assign(vertices + 1, 0);

@@ -31,6 +31,15 @@ struct EdgeRange {
 // The edges whose smaller vertex is in [first, first + count).
 EdgeRange EdgesOf(const EdgeList& edges, std::uint32_t first, std::uint32_t count);
 
+// The edges at each vertex: vertex v has those from offsets[v] to offsets[v + 1] - 1. Each leads to a vertex of
+// `neighbours` and is the edge number `edges` of the list.
+struct EdgeGraph {
+  std::vector<std::uint32_t> offsets;
+  std::vector<std::uint32_t> neighbours;
+  std::vector<std::uint32_t> edges;
+};
+EdgeGraph BuildEdgeGraph(std::uint32_t vertices, const EdgeList& list);
+
 // The neighbours of each vertex along edges: vertex v has neighbours[offsets[v]] to neighbours[offsets[v + 1] - 1].
 struct VertexGraph {
   std::vector<std::uint32_t> offsets;

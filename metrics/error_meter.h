@@ -20,12 +20,18 @@ namespace sac {
 //   while (...) meter.Add(original_frame, decoded_frame);
 //   DistortionMetrics m = meter.Result();
 //
+// Of a clip whose mesh changes, KG is that of all frames; of STED's parts the squares are averaged over the frames; all
+// others are the largest.
+//
 // Positions that are not finite make the results that they enter NaN or infinite.
 class ErrorMeter {
  public:
   // Every index of `triangles` must be below `vertices`. Degenerate and duplicate triangles, isolated vertices and a
   // mesh without triangles are fine.
   ErrorMeter(std::vector<Triangle> triangles, std::size_t vertices);
+
+  // Goes on with frames of another mesh.
+  void BeginMesh(std::vector<Triangle> triangles, std::size_t vertices);
 
   // Takes the next frame, in display order. Both must have `vertices` positions, in the same vertex order.
   void Add(const Positions& original, const Positions& decoded);
@@ -34,13 +40,16 @@ class ErrorMeter {
   DistortionMetrics Result() const;
 
  private:
+  DistortionMetrics OfThisMesh() const;
+
+  DistortionMetrics before_;  // of the meshes before this, but for KG and STED
   KgError kg_;
   SpatialSted spatial_;
   TemporalSted temporal_;
   SeamGap seam_gap_;
   PartError parts_;
   double max_error2_ = 0;
-  std::size_t frames_ = 0;
+  std::size_t frames_ = 0;  // of this mesh
 };
 
 }  // namespace sac

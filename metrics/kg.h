@@ -15,7 +15,7 @@ namespace sac {
 // the model stands.
 class KgError {
  public:
-  // Takes the next frame. Both have the same number of vertices.
+  // Takes the next frame. Both have the same number of vertices, which may be another one than before.
   void Add(const Positions& original, const Positions& decoded);
 
   // In percent. An original without spread (every frame a single point) makes the quotient 0 / 0 or x / 0: the error is

@@ -18,7 +18,7 @@ double Distance2(const Vec3f& p, const Vec3f& q) {
 }  // namespace
 
 SpatialSted::SpatialSted(const std::vector<Triangle>& triangles, std::size_t vertices)
-    : graph_(BuildEdgeGraph(triangles, vertices)),
+    : graph_(BuildRimGraph(triangles, vertices)),
       length_(graph_.edges.size()),
       change_(graph_.edges.size()),
       spokes_(vertices) {}

@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-#include "metrics/edge_graph.h"
+#include "metrics/rim_graph.h"
 #include "sac/mesh.h"
 
 namespace sac {
@@ -41,7 +41,7 @@ class SpatialSted {
   Moments OfSpokes(std::size_t v) const;
   double DeviationNear(std::size_t v) const;
 
-  EdgeGraph graph_;
+  RimGraph graph_;
   std::vector<double> length_, change_;  // per edge: l, r
   std::vector<Moments> spokes_;          // per vertex, over the edges at the vertex
   double sum_ = 0;

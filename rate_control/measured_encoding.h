@@ -3,12 +3,15 @@
 
 #include <cstdint>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 
+#include "rate_control/shape_residual.h"
 #include "sac/clip.h"
 #include "sac/clip_encoder.h"
 #include "sac/encoder.h"
+#include "sac/mesh.h"
 #include "sac/status.h"
 
 namespace sac {
@@ -20,10 +23,19 @@ using ByteSink = std::function<Status(std::span<const std::uint8_t> bytes)>;
 // is empty.
 Status Named(const std::string& name, const Status& status);
 
-// Encodes a clip from its first frame on. With `measure` it decodes the stream while it is encoded and measures the
-// decoded frames against the clip. `sink` gets the bytes; it may be empty. All members of `result` but the number of
-// trials are set. Error messages begin with the clip's name and, where a frame is at fault, its number.
-Status EncodeAndMeasure(ClipReader& clip, const EncoderSettings& settings, bool measure, const ByteSink& sink,
+// What an encoding does beside coding the frames of a clip.
+struct EncodingTask {
+  // The mesh of each segment's I-frame; the clip's own where there is none.
+  std::span<const std::optional<Mesh>> shapes = {};
+  bool measure = true;  // decodes the stream while it is encoded and measures it against the clip
+  ByteSink sink;        // gets the bytes; it may be empty
+  // With `measure`: gets the decoded shape and all frames of a clip that has one segment; null: nobody does.
+  ShapeResidual* residual = nullptr;
+};
+
+// Encodes a clip from its first frame on, each of its meshes as a segment. All members of `result` but the numbers of
+// trials and of rounds are set. Error messages begin with the clip's name and, where a frame is at fault, its number.
+Status EncodeAndMeasure(ClipReader& clip, const EncoderSettings& settings, const EncodingTask& task,
                         EncodedClip& result);
 
 }  // namespace sac

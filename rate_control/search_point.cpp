@@ -14,29 +14,25 @@ namespace {
 constexpr double kMinBits = 4, kMaxBits = 20;
 
 // Means over the clips of docs/quality.md.
-constexpr std::array<TypicalFigures, 10> kTypical = {{{0, 4.8, 0.22, 0.06},
+constexpr std::array<TypicalFigures, 11> kTypical = {{{0, 4.8, 0.22, 0.06},
                                                       {10, 2.9, 0.12, 0.085},
                                                       {25, 1.9, 0.075, 0.12},
                                                       {50, 1.35, 0.051, 0.16},
                                                       {60, 1, 0.042, 0.2},
                                                       {70, 0.55, 0.035, 0.29},
                                                       {75, 0.45, 0.033, 0.36},
-                                                      {80, 0.2, 0.0325, 0.66},
-                                                      {90, 0.1, 0.02, 1.2},
-                                                      {100, 0.026, 0.007, 2.9}}};
+                                                      {78, 0.4, 0.031, 0.42},
+                                                      {80, 0.145, 0.025, 0.75},
+                                                      {90, 0.083, 0.0165, 1.26},
+                                                      {100, 0.024, 0.0065, 3}}};
 
 }  // namespace
 
 OperatingPoint PointOf(const SearchPoint& point, const CodingMode& mode, std::uint32_t fixed_harmonics,
-                       double max_harmonics) {
+                       double max_harmonics, double bits_of_density) {
   const double limit = fixed_harmonics > 0 ? fixed_harmonics : max_harmonics;
-  OperatingPoint s;
-  if (mode.detail) {
-    // Using only the table's rows with few harmonics, so that detail begins early enough.
-    s = PointOfQuality(point.quality, {});
-  } else {
-    s = SmoothPointOfQuality(point.quality, limit);
-  }
+  const OperatingPoint s =
+      mode.detail ? DetailPointOfQuality(point.quality, limit) : SmoothPointOfQuality(point.quality, limit);
   double harmonics = fixed_harmonics;
   if (fixed_harmonics == 0) {
     harmonics = std::round(std::min(s.harmonics * std::exp(point.log_harmonics), limit));
@@ -44,7 +40,8 @@ OperatingPoint PointOf(const SearchPoint& point, const CodingMode& mode, std::ui
   }
   // Position bits are rounded to three digits, as documents and reports show them.
   return {s.motion_step * std::exp(point.log_motion), s.displacement_step, s.detail_step,
-          std::clamp(std::round(1e3 * (s.position_bits + point.more_bits)) / 1e3, kMinBits, kMaxBits), harmonics};
+          std::clamp(std::round(1e3 * (s.position_bits + bits_of_density + point.more_bits)) / 1e3, kMinBits, kMaxBits),
+          harmonics};
 }
 
 EncoderSettings SettingsOf(const OperatingPoint& point, double quality, const EncoderSettings& base) {

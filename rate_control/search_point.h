@@ -25,12 +25,12 @@ struct CodingMode {
   bool detail;
   double min_quality, max_quality;
 };
-inline constexpr CodingMode kSmooth{false, -40, 95}, kDetailed{true, 60.6, 125};
+inline constexpr CodingMode kSmooth{false, -40, 110}, kDetailed{true, 60.6, 125};
 
-// The settings that `point` stands for. The number of harmonics is `fixed_harmonics` or, when that is 0, at most
-// `max_harmonics`.
+// The settings that `point` stands for, with `bits_of_density` position bits more. The number of harmonics is
+// `fixed_harmonics` or, when that is 0, at most `max_harmonics`.
 OperatingPoint PointOf(const SearchPoint& point, const CodingMode& mode, std::uint32_t fixed_harmonics,
-                       double max_harmonics);
+                       double max_harmonics, double bits_of_density);
 
 // `base` with the settings of `point`, and with `quality` limited to 0..100.
 EncoderSettings SettingsOf(const OperatingPoint& point, double quality, const EncoderSettings& base);

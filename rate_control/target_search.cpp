@@ -37,11 +37,12 @@ double LogRatio(double figure, double target) { return std::log(std::max(figure,
 
 class Search {
  public:
-  Search(const RateTargets& targets, const EncoderSettings& base, std::uint32_t vertices,
+  Search(const RateTargets& targets, const EncoderSettings& base, const Mesh& mesh,
          const std::function<Status(Trial&)>& run)
       : targets_(targets),
         base_(base),
-        max_harmonics_(HarmonicLimitsOf(vertices).most()),
+        max_harmonics_(MostHarmonics(static_cast<std::uint32_t>(mesh.positions.size()))),
+        bits_of_density_(BitsOfDensity(mesh)),
         run_(run),
         free_{targets.kg && targets.sted, true, !base.harmonics, targets.kg && targets.sted ? 1.0 : 0.6} {}
 
@@ -68,7 +69,7 @@ class Search {
   Status SearchMode(const CodingMode& mode, double quality);
   Status Evaluate(const SearchPoint& point, const CodingMode& mode);
   OperatingPoint Point(const SearchPoint& point, const CodingMode& mode) const {
-    return PointOf(point, mode, base_.harmonics.value_or(0), max_harmonics_);
+    return PointOf(point, mode, base_.harmonics.value_or(0), max_harmonics_, bits_of_density_);
   }
   // The cheapest trial of a mode that meets the targets, null when there is none.
   const Tried* Best(bool detail) const;
@@ -78,6 +79,7 @@ class Search {
   const RateTargets& targets_;
   const EncoderSettings& base_;
   double max_harmonics_;  // largest number of harmonics that is worth trying and that decoders allow
+  const double bits_of_density_;
   const std::function<Status(Trial&)>& run_;
   const FreePlace free_;
   std::deque<Tried> tried_;
@@ -230,13 +232,13 @@ Status Search::Unreachable() const {
 
 }  // namespace
 
-Status SearchTargets(const RateTargets& targets, const EncoderSettings& base, std::uint32_t vertices,
+Status SearchTargets(const RateTargets& targets, const EncoderSettings& base, const Mesh& mesh,
                      const std::function<Status(Trial&)>& run, Trial& best) {
   for (const std::optional<double>& target : {targets.kg, targets.sted, targets.bpvf}) {
     if (target && !(std::isfinite(*target) && *target > 0)) return Status::InvalidArgument("a target must be positive");
   }
   if (!targets.any()) return Status::InvalidArgument("no target");
-  return Search(targets, base, vertices, run).Run(best);
+  return Search(targets, base, mesh, run).Run(best);
 }
 
 }  // namespace sac

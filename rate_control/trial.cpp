@@ -5,15 +5,19 @@
 
 namespace sac {
 
+void Trial::Take(const EncodedClip& encoded) {
+  bytes = encoded.bytes;
+  parts = encoded.parts;
+  vertices = static_cast<double>(encoded.info.vertices);
+  bpvf = encoded.bpvf();
+  kg = encoded.distortion.kg;
+  sted = encoded.distortion.sted;
+}
+
 Status RunTrial(ClipReader& clip, Trial& trial) {
   EncodedClip encoded;
-  SAC_RETURN_IF_ERROR(EncodeAndMeasure(clip, trial.settings, true, {}, encoded));
-  trial.bytes = encoded.bytes;
-  trial.parts = encoded.parts;
-  trial.vertices = static_cast<double>(encoded.info.vertices);
-  trial.bpvf = encoded.bpvf();
-  trial.kg = encoded.distortion.kg;
-  trial.sted = encoded.distortion.sted;
+  SAC_RETURN_IF_ERROR(EncodeAndMeasure(clip, trial.settings, {}, encoded));
+  trial.Take(encoded);
   return Status::Ok();
 }
 

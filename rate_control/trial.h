@@ -5,6 +5,7 @@
 
 #include "codec/encode/operating_point.h"
 #include "sac/clip.h"
+#include "sac/clip_encoder.h"
 #include "sac/encoder.h"
 #include "sac/status.h"
 #include "sac/stream_info.h"
@@ -21,10 +22,13 @@ struct Trial {
   double bpvf = 0;  // bits per vertex and frame, all bytes counted
   double kg = 0;    // percent
   double sted = 0;
+
+  // Sets all members but `settings` and `point`.
+  void Take(const EncodedClip& encoded);
 };
 
-// Encodes a clip with trial.settings, decodes the stream while it is encoded, and measures the decoded frames against
-// the clip. Sets all members of `trial` but `settings` and `point`.
+// Encodes a clip from its first frame with trial.settings, decodes the stream while it is encoded, and measures the
+// decoded frames against the clip. Sets all members of `trial` but `settings` and `point`.
 Status RunTrial(ClipReader& clip, Trial& trial);
 
 }  // namespace sac

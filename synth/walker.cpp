@@ -121,11 +121,11 @@ Animation MakeWalker(std::uint32_t vertices, Random random) {
   for (const Vector3d& p : surface.points) skin.push_back(body->SkinAt(p));
   Animation animation;
   animation.mesh.triangles = std::move(surface.triangles);
-  animation.motion = [body = body, gait, points = std::move(surface.points), skin = std::move(skin)](double t) {
+  animation.motion = [solid = body, gait, points = std::move(surface.points), skin = std::move(skin)](double t) {
     const Pose pose = PoseAt(gait, t);
     Positions out;
     out.reserve(points.size());
-    for (std::size_t v = 0; v < points.size(); ++v) out.push_back(ToFloat(Place(*body, pose, skin[v], points[v])));
+    for (std::size_t v = 0; v < points.size(); ++v) out.push_back(ToFloat(Place(*solid, pose, skin[v], points[v])));
     return out;
   };
   return animation;

@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "format/bytes.h"
-#include "format/group_syntax.h"
+#include "format/group.h"
 #include "format/packet.h"
 
 namespace sac {

@@ -12,13 +12,11 @@
 #include <string>
 #include <vector>
 
+#include "codec/handles.h"
 #include "codec/patches.h"
-#include "codec/radial_functions.h"
+#include "format/bit_mixer.h"
 #include "format/bytes.h"
 #include "format/crc32.h"
-#include "format/frame_coder.h"
-#include "format/group_structure.h"
-#include "format/harmonic_order.h"
 #include "format/integer_coder.h"
 #include "format/logistic.h"
 #include "format/packet.h"
@@ -29,34 +27,38 @@
 #include "format/stream_index.h"
 #include "geometry/components.h"
 #include "geometry/deformation.h"
+#include "geometry/edges.h"
 #include "sac/decoder.h"
 #include "tests/spec_examples.h"
 
 namespace sac {
 namespace {
 
-// The examples that a test below runs, and those that are for the second decoder: "generic", "inhomogeneity" and
-// "weights" are constants of the code, which the vectors of conformance/ check.
-const std::set<std::string> kRun = {"classes",
+// The examples that a test here or in spec_positions_test.cpp runs, and those that are for the second decoder:
+// "generic", "inhomogeneity" and "weights" are constants of the code, which the vectors of conformance/ check.
+const std::set<std::string> kRun = {"bit-model",
+                                    "classes",
                                     "coefficients",
                                     "crc32",
                                     "deformation-gradient",
                                     "generic",
                                     "group-structure",
                                     "group-structure-cut",
+                                    "handles",
                                     "harmonic-order",
                                     "inhomogeneity",
                                     "index",
                                     "integers",
+                                    "layered-order",
                                     "level-steps",
                                     "level-steps-capped",
                                     "logistic",
+                                    "mixed",
                                     "packet",
                                     "patches",
+                                    "positions",
                                     "range-coder",
                                     "records",
-                                    "reduced",
-                                    "state",
                                     "stream",
                                     "stream-positions",
                                     "varint",
@@ -108,7 +110,7 @@ TEST(Spec, Index) {
   const auto lines = Example("index");
   const auto words = Words(lines.at(0));
   const auto number = [&](std::size_t i) { return static_cast<std::uint32_t>(std::stoul(words.at(i))); };
-  EndSyntax end{number(1), StreamIndex{number(3), {}}};
+  EndSyntax end{number(1), StreamIndex{number(3), {}, {}}};
   for (std::size_t i = 5; i + 1 < words.size(); i += 2) end.index->groups.push_back({number(i), number(i + 1)});
   const Bytes packet = WritePacket(PacketType::kEnd, WriteEnd(end));
   EXPECT_EQ(Hex(packet), Equation(lines.at(1)).second);
@@ -134,48 +136,6 @@ TEST(Spec, Records) {
       code.push_back(static_cast<std::uint8_t>(std::stoul(words[i], nullptr, 16)));
     }
     EXPECT_EQ(Hex(records.Frame(code)), bytes);
-  }
-}
-
-TEST(Spec, GroupStructure) {
-  for (const char* id : {"group-structure", "group-structure-cut"}) {
-    const Lines& lines = Example(id);
-    ASSERT_FALSE(lines.empty());
-    unsigned frames = 0, pyramid = 0;
-    ASSERT_EQ(std::sscanf(lines[0].c_str(), "frames %u pyramid %u", &frames, &pyramid), 2);
-    const std::vector<FrameSlot> slots = GroupStructure(frames, pyramid);
-    ASSERT_EQ(slots.size(), lines.size() - 1);
-    for (std::size_t i = 0; i < slots.size(); ++i) {
-      std::ostringstream line;
-      line << "display " << slots[i].display << " level " << slots[i].level << " references";
-      for (const std::uint32_t r : slots[i].references) line << " " << r;
-      EXPECT_EQ(line.str(), lines[i + 1]);
-    }
-  }
-}
-
-TEST(Spec, HarmonicOrder) {
-  const Lines& lines = Example("harmonic-order");
-  ASSERT_EQ(lines.size(), 2u);
-  std::ostringstream order;
-  order << "order";
-  const auto counts = Row<std::uint32_t>("harmonic-order", "counts");
-  for (const HarmonicIndex& i : HarmonicOrder(counts)) order << " (" << i.component << "," << i.k << ")";
-  EXPECT_EQ(order.str(), lines[1]);
-}
-
-TEST(Spec, LevelSteps) {
-  for (const char* id : {"level-steps", "level-steps-capped"}) {
-    SequenceHeader header;
-    header.level_growth = Row<std::uint8_t>(id, "growth").at(0);
-    const auto steps = Row<std::int32_t>(id, "steps");
-    for (std::size_t level = 0; level < steps.size(); ++level) {
-      const auto l = static_cast<std::uint32_t>(level);
-      for (const Plane plane : {kMotion, kDisplacement, kDetail}) {
-        EXPECT_EQ(LevelStep(header, plane, l), steps[level]) << id << " " << level;
-      }
-      EXPECT_EQ(LevelStep(header, kCorrection, l), 16);
-    }
   }
 }
 
@@ -261,14 +221,37 @@ TEST(Spec, Logistic) {
   EXPECT_TRUE(std::equal(curve.begin(), curve.end(), kLogisticCurve.begin(), kLogisticCurve.end()));
 }
 
-TEST(Spec, State) {
-  const auto bins = Row<int>("state", "bins");
-  const auto inputs = Row<std::int64_t>("state", "inputs");
-  AdaptiveBit state;
+TEST(Spec, BitModel) {
+  const auto bins = Row<int>("bit-model", "bins");
+  const auto probabilities = Row<std::uint32_t>("bit-model", "probabilities");
+  const auto inputs = Row<std::int32_t>("bit-model", "inputs");
+  BitModel model;
   for (std::size_t i = 0; i < bins.size(); ++i) {
-    EXPECT_EQ(state.logit(), inputs.at(i));
-    state.Update(bins[i] != 0);
+    EXPECT_EQ(model.probability(), probabilities.at(i));
+    EXPECT_EQ(model.logit(), inputs.at(i));
+    model.Update(bins[i] != 0);
   }
+}
+
+// A coder that keeps the probabilities of the bins that it is given.
+struct ProbabilityRecorder {
+  static constexpr bool kDecodes = false;
+  void Decide(std::uint32_t p, bool&) { probabilities.push_back(p); }
+  std::vector<std::uint32_t> probabilities;
+};
+
+TEST(Spec, Mixed) {
+  const auto weights = Row<std::int32_t>("mixed", "weights");
+  ASSERT_EQ(weights.size(), 3u);
+  std::array<BitModel, 2> models;
+  Mixer<3> first({weights[0], weights[1], weights[2]}), second = first;
+  ProbabilityRecorder coder;
+  for (const int bin : Row<int>("mixed", "bins")) {
+    Mixer<3>::Inputs inputs = {0, 0, Row<std::int32_t>("mixed", "feature").at(0)};
+    bool bit = bin != 0;
+    CodeMixed(coder, first, second, inputs, std::array{&models[0], &models[1]}, bit);
+  }
+  EXPECT_EQ(coder.probabilities, Row<std::uint32_t>("mixed", "probabilities"));
 }
 
 TEST(Spec, Classes) {
@@ -312,15 +295,26 @@ TEST(Spec, SaysItsVersion) {
   EXPECT_NE(text.find("\n| `version_minor` | u8 | " + minor + " |"), std::string::npos);
 }
 
-TEST(Spec, ReducedFunctions) {
+TEST(Spec, Handles) {
   std::vector<GridPosition> grid;
-  for (std::uint32_t v = 0; v < 10; ++v) grid.push_back({v * v, 0, 0});
-  const auto wanted = Row<std::size_t>("reduced", "samples");
-  Eigen::SparseMatrix<double> sparse;
-  ASSERT_TRUE(RadialFunctions(grid, static_cast<std::uint32_t>(wanted.size()), 1e9, sparse));
-  const Eigen::MatrixXd functions = sparse;
-  const auto row = Row<double>("reduced", "functions");
-  for (std::size_t i = 0; i < row.size(); ++i) EXPECT_NEAR(functions(7, static_cast<Eigen::Index>(i)), row[i], 5.1e-7);
+  EdgeList line;
+  for (std::uint32_t v = 0; v < 10; ++v) {
+    grid.push_back({v * v, 0, 0});
+    if (v > 0) line.ends.push_back({v - 1, v});
+  }
+  const auto vertices = Row<std::uint32_t>("handles", "handles");
+  Handles handles;
+  ASSERT_TRUE(ChooseHandles(BuildEdgeGraph(10, line), EdgeLengths(line, grid), std::vector<Component>{{0, 10}},
+                            std::vector<std::uint32_t>{3}, std::vector<std::uint32_t>{1}, 1e9, handles)
+                  .ok());
+  EXPECT_EQ(handles.vertices, vertices);
+  const auto followed = Row<std::uint32_t>("handles", "followed");
+  const auto weights = Row<double>("handles", "weights");
+  ASSERT_EQ(handles.FollowedBy(7).size(), followed.size());
+  for (std::size_t i = 0; i < followed.size(); ++i) {
+    EXPECT_EQ(handles.FollowedBy(7)[i], followed[i]);
+    EXPECT_NEAR(handles.WeightsOf(7)[i], weights[i], 5.1e-7);
+  }
 }
 
 // --- Appendix A. ----------------------------------------------------------------------------------------------------

@@ -130,7 +130,7 @@ inline Mesh PartsMesh() {
 
 // The shape that a decoder would build of `mesh`, whose components have to be runs of vertices, on a grid of `bits`.
 // The header's steps are left to the caller.
-inline void MakeShape(const Mesh& mesh, const std::vector<std::uint32_t>& counts, std::uint32_t samples_per_harmonic,
+inline void MakeShape(const Mesh& mesh, const std::vector<std::uint32_t>& counts, std::uint32_t handles_per_harmonic,
                       int bits, SequenceHeader& header, Shape& shape) {
   const PositionMatrix p = ToMatrix(mesh.positions);
   const Eigen::RowVector3d low = p.colwise().minCoeff(), extent = p.colwise().maxCoeff() - low;
@@ -155,7 +155,7 @@ inline void MakeShape(const Mesh& mesh, const std::vector<std::uint32_t>& counts
     if (v == 0 || labels[v] != labels[v - 1]) decoded.components.push_back({v, 0});
     ++decoded.components.back().count;
   }
-  const Status status = BuildShape(header, decoded, counts, samples_per_harmonic, {}, shape);
+  const Status status = BuildShape(header, decoded, counts, handles_per_harmonic, {}, shape);
   ASSERT_TRUE(status.ok()) << status.message();
 }
 

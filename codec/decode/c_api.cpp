@@ -13,7 +13,8 @@
 
 struct sac_decoder {
   sac::Decoder decoder;
-  std::string message;  // message of the last call that failed
+  std::string message;      // message of the last call that failed
+  sac::BlendWeights blend;  // what sac_decoder_blend() gave out
 };
 
 namespace {
@@ -116,6 +117,7 @@ void sac_settings_init(sac_settings* settings) {
   settings->skip_damage = defaults.skip_damage ? 1 : 0;
   settings->frame_step = defaults.frame_step;
   settings->threads = defaults.threads;
+  settings->layers = defaults.layers;
 }
 
 sac_status sac_decoder_open(sac_decoder** decoder, const sac_settings* settings) {
@@ -138,9 +140,10 @@ sac_status sac_decoder_open(sac_decoder** decoder, const sac_settings* settings)
   to.skip_damage = s.skip_damage != 0;
   to.frame_step = s.frame_step;
   to.threads = s.threads;
+  to.layers = s.layers;
   try {
     if (s.run_jobs != nullptr) to.run_jobs = CJobRunner{s.run_jobs, s.run_jobs_user};
-    *decoder = new sac_decoder{sac::Decoder(to), {}};
+    *decoder = new sac_decoder{sac::Decoder(to), {}, {}};
     return SAC_OK;
   } catch (const std::exception&) {
     return SAC_LIMIT;
@@ -203,6 +206,53 @@ sac_status sac_decoder_mesh(sac_decoder* decoder, sac_mesh* mesh) {
   });
 }
 
+sac_status sac_decoder_segment(sac_decoder* decoder, uint32_t* segment) {
+  return Run(decoder, [&](sac::Decoder& d) {
+    if (segment == nullptr) return Missing();
+    if (!d.segment()) return Status::NeedMoreData();
+    *segment = *d.segment();
+    return Status::Ok();
+  });
+}
+
+sac_status sac_decoder_still(sac_decoder* decoder, const float** positions) {
+  return Run(decoder, [&](sac::Decoder& d) {
+    if (positions == nullptr) return Missing();
+    if (d.mesh() == nullptr) return Status::NeedMoreData();
+    *positions = Flat<float>(d.mesh()->positions);
+    return Status::Ok();
+  });
+}
+
+sac_status sac_decoder_prepare(sac_decoder* decoder) {
+  return Run(decoder, [](sac::Decoder& d) { return d.Prepare(); });
+}
+
+sac_status sac_decoder_flush(sac_decoder* decoder) {
+  return Run(decoder, [](sac::Decoder& d) { return d.Flush(); });
+}
+
+sac_status sac_decoder_metadata(sac_decoder* decoder, sac_metadata* metadata) {
+  return Run(decoder, [&](sac::Decoder& d) {
+    if (metadata == nullptr) return Missing();
+    if (d.metadata() == nullptr) return Status::NeedMoreData();
+    const sac::Metadata& m = *d.metadata();
+    *metadata = {};
+    metadata->name = m.name.empty() ? nullptr : m.name.c_str();
+    metadata->json = m.json.empty() ? nullptr : m.json.c_str();
+    metadata->metres_per_unit = m.metres_per_unit.value_or(0);
+    metadata->up_axis = m.up_axis ? *m.up_axis : -1;
+    metadata->first_frame = m.first_frame.value_or(0);
+    metadata->loops = m.loops ? (*m.loops ? 1 : 0) : -1;
+    metadata->has_bounds = m.bounds ? 1 : 0;
+    if (m.bounds) {
+      std::copy(m.bounds->low.begin(), m.bounds->low.end(), metadata->box_low);
+      std::copy(m.bounds->high.begin(), m.bounds->high.end(), metadata->box_high);
+    }
+    return Status::Ok();
+  });
+}
+
 sac_status sac_decoder_corner_normals(sac_decoder* decoder, const float** normals, uint32_t* count,
                                       const uint32_t** triangle_normals) {
   return Run(decoder, [&](sac::Decoder& d) {
@@ -248,6 +298,43 @@ sac_status sac_decoder_interpolate(sac_decoder* decoder, double frame_time, cons
     SAC_RETURN_IF_ERROR(ToBuffers(buffers, to));
     SAC_RETURN_IF_ERROR(d.Interpolate(frame_time, to, described));
     Describe(described, info);
+    return Status::Ok();
+  });
+}
+
+sac_status sac_decoder_blend(sac_decoder* decoder, sac_blend* blend) {
+  return Run(decoder, [&](sac::Decoder& d) {
+    if (blend == nullptr) return Missing();
+    SAC_RETURN_IF_ERROR(d.Blend(decoder->blend));
+    const sac::BlendWeights& b = decoder->blend;
+    *blend = {b.handle_count, static_cast<std::uint32_t>(b.handles.size()), b.first.data(), b.handles.data(),
+              b.weights.data()};
+    return Status::Ok();
+  });
+}
+
+sac_status sac_decoder_receive_handles(sac_decoder* decoder, float* matrices, size_t count, sac_frame_info* info,
+                                       uint32_t* exact) {
+  return Run(decoder, [&](sac::Decoder& d) {
+    if (matrices == nullptr) return Missing();
+    sac::FrameInfo described;
+    bool is_exact = false;
+    SAC_RETURN_IF_ERROR(d.ReceiveHandles({matrices, count}, described, is_exact));
+    Describe(described, info);
+    if (exact != nullptr) *exact = is_exact ? 1 : 0;
+    return Status::Ok();
+  });
+}
+
+sac_status sac_decoder_interpolate_handles(sac_decoder* decoder, double frame_time, float* matrices, size_t count,
+                                           sac_frame_info* info, uint32_t* exact) {
+  return Run(decoder, [&](sac::Decoder& d) {
+    if (matrices == nullptr) return Missing();
+    sac::FrameInfo described;
+    bool is_exact = false;
+    SAC_RETURN_IF_ERROR(d.InterpolateHandles(frame_time, {matrices, count}, described, is_exact));
+    Describe(described, info);
+    if (exact != nullptr) *exact = is_exact ? 1 : 0;
     return Status::Ok();
   });
 }

@@ -2,7 +2,6 @@
 #include "sac/decoder.h"
 
 #include <exception>
-#include <utility>
 
 #include "codec/decode/stream_decoder.h"
 
@@ -59,6 +58,18 @@ Status Decoder::Interpolate(double time, const FrameBuffers& buffers, FrameInfo&
       [&](StreamDecoder& stream) { return stream.Interpolate(time, impl_->positions, info, &buffers); });
 }
 
+Status Decoder::Blend(BlendWeights& weights) {
+  return impl_->Contain([&](StreamDecoder& stream) { return stream.Weights(weights); });
+}
+
+Status Decoder::ReceiveHandles(std::span<float> matrices, FrameInfo& info, bool& exact) {
+  return impl_->Contain([&](StreamDecoder& stream) { return stream.ReceiveHandles(matrices, info, exact); });
+}
+
+Status Decoder::InterpolateHandles(double time, std::span<float> matrices, FrameInfo& info, bool& exact) {
+  return impl_->Contain([&](StreamDecoder& stream) { return stream.InterpolateHandles(time, matrices, info, exact); });
+}
+
 Status Decoder::Finish() {
   return impl_->Contain([&](StreamDecoder& stream) { return stream.Finish(); });
 }
@@ -75,6 +86,14 @@ Status Decoder::AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed
   return impl_->Contain([&](StreamDecoder& stream) { return stream.AddIndex(tail, needed); });
 }
 
+Status Decoder::Prepare() {
+  return impl_->Contain([](StreamDecoder& stream) { return stream.Prepare(); });
+}
+
+Status Decoder::Flush() {
+  return impl_->Contain([](StreamDecoder& stream) { return stream.Flush(); });
+}
+
 void Decoder::Reset() noexcept { impl_->Restart(); }
 
 const StreamInfo* Decoder::info() const {
@@ -85,6 +104,13 @@ const StreamInfo* Decoder::info() const {
 const Mesh* Decoder::mesh() const {
   const StreamStart& start = impl_->stream->start();
   return start.mesh() ? &*start.mesh() : nullptr;
+}
+
+std::optional<std::uint32_t> Decoder::segment() const { return impl_->stream->start().segment(); }
+
+const Metadata* Decoder::metadata() const {
+  const std::optional<Metadata>& metadata = impl_->stream->metadata();
+  return metadata ? &*metadata : nullptr;
 }
 
 const std::vector<std::uint32_t>& Decoder::order() const { return impl_->stream->start().order(); }

@@ -47,14 +47,13 @@ FrameSource::FrameSource(const Shape& shape, const SequenceHeader& header, unsig
   reconstructors_.resize(threads);
 }
 
-Status FrameSource::Take(CodedFrames frames, bool starts_group) {
+void FrameSource::Take(CodedFrames frames, bool starts_group) {
   before_.reset();
   if (!now_.frames.empty() && now_.end() == frames.first) before_ = std::move(now_.frames.back());
   now_ = {};
   DropReady();
-  if (starts_group || !reconstructors_[0]) SAC_RETURN_IF_ERROR(Restart());
+  if (starts_group || !reconstructors_[0]) Restart();
   now_ = std::move(frames);
-  return Status::Ok();
 }
 
 void FrameSource::Drop() {
@@ -63,13 +62,12 @@ void FrameSource::Drop() {
   DropReady();
 }
 
-Status FrameSource::Restart() {
+void FrameSource::Restart() {
   DropReady();
   for (std::unique_ptr<Reconstructor>& r : reconstructors_) {
     if (!r) r = std::make_unique<Reconstructor>(shape_, header_);
-    if (!r->StartGroup()) return Status::Corrupt("the first frame's shape is singular");
+    r->StartGroup();
   }
-  return Status::Ok();
 }
 
 const CodedFrames::Frame* FrameSource::Find(std::uint32_t frame) const {
@@ -123,7 +121,22 @@ Status FrameSource::ReconstructAhead(std::uint32_t frame, std::uint32_t step) {
   return Status::Ok();
 }
 
-Status FrameSource::Reconstruct(std::uint32_t frame, std::uint32_t step, Positions& positions) {
+void FrameSource::Blend(const FramePlanes& planes, const RigidTransform& transform, FrameOutput& output) {
+  output.blend = &reconstructors_[0]->ReconstructBlend(planes, transform);
+  const auto is_zero = [](const PlaneValues& plane) {
+    return std::all_of(plane.begin(), plane.end(), [](std::int32_t c) { return c == 0; });
+  };
+  output.exact = is_zero(planes[kDetail]) && is_zero(planes[kCorrection]);
+}
+
+Status FrameSource::Reconstruct(std::uint32_t frame, std::uint32_t step, FrameOutput& output) {
+  if (output.positions == nullptr) {
+    const CodedFrames::Frame& coded = now_.frames[frame - now_.first];
+    if (!coded.whole) return CorruptFrame(frame, "its bytes are missing");
+    Blend(coded.coefficients.planes, reconstructors_[0]->TransformOf(coded.coefficients.rigid), output);
+    return Status::Ok();
+  }
+  Positions& positions = *output.positions;
   if (reconstructors_.size() == 1 || now_.frames.size() == 1) {
     return ReconstructWith(*reconstructors_[0], frame, positions);
   }
@@ -135,7 +148,7 @@ Status FrameSource::Reconstruct(std::uint32_t frame, std::uint32_t step, Positio
   return ready.status;
 }
 
-Status FrameSource::Interpolate(double time, Positions& positions) {
+Status FrameSource::Interpolate(double time, FrameOutput& output) {
   const double floor = std::floor(time);
   const auto frame = static_cast<std::uint32_t>(floor);
   const CodedFrames::Frame* const a = Find(frame);
@@ -145,7 +158,10 @@ Status FrameSource::Interpolate(double time, Positions& positions) {
   const double t = time - floor;
   Between(from.planes, to.planes, t, between_);
   Reconstructor& with = *reconstructors_[0];
-  return Round(with.Reconstruct(between_, with.TransformBetween(from.rigid, to.rigid, t)), frame, positions);
+  const RigidTransform transform = with.TransformBetween(from.rigid, to.rigid, t);
+  if (output.positions != nullptr) return Round(with.Reconstruct(between_, transform), frame, *output.positions);
+  Blend(between_, transform, output);
+  return Status::Ok();
 }
 
 }  // namespace sac

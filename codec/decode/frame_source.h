@@ -17,6 +17,13 @@
 
 namespace sac {
 
+// What a frame is turned into: positions, or the coefficients of the blend alone.
+struct FrameOutput {
+  Positions* positions = nullptr;    // filled, model units; null: the coefficients are wanted
+  const RowMatrix* blend = nullptr;  // then these, about the origin; valid until the next frame
+  bool exact = true;                 // whether the blend leaves nothing out
+};
+
 // Holds the coefficients of the frames that were read last, and turns them into positions.
 class FrameSource {
  public:
@@ -25,10 +32,10 @@ class FrameSource {
   FrameSource(const Shape& shape, const SequenceHeader& header, unsigned threads, const JobRunner& run_jobs);
 
   // Holds the frames of a new group, or the next frame of an open group. The last of the frames held before is kept for
-  // Interpolate(). kCorrupt when the first frame's shape is singular.
-  Status Take(CodedFrames frames, bool starts_group);
-  // Goes back to the first of the frames that are held. kCorrupt when the first frame's shape is singular.
-  Status Restart();
+  // Interpolate().
+  void Take(CodedFrames frames, bool starts_group);
+  // Goes back to the first of the frames that are held.
+  void Restart();
   // Holds no frames any more.
   void Drop();
   const CodedFrames& frames() const { return now_; }
@@ -36,14 +43,14 @@ class FrameSource {
   // Whether a frame that is held needed no other.
   bool IsIntra(std::uint32_t frame) const { return Find(frame) != nullptr && Find(frame)->intra; }
 
-  // Gives the positions of a frame that frames() has, model units. Frames must be asked for by ascending numbers; where
+  // Gives a frame that frames() has. Frames must be asked for by ascending numbers; where
   // they reference the previous frame, none may be left out. The next request is expected `step` frames later, and
   // frames are reconstructed ahead for it. Returns kCorrupt, with the frame's number, when the frame cannot be
   // reconstructed; kInvalidArgument when run_jobs throws or leaves a job out.
-  Status Reconstruct(std::uint32_t frame, std::uint32_t step, Positions& positions);
+  Status Reconstruct(std::uint32_t frame, std::uint32_t step, FrameOutput& output);
 
-  // Gives the positions at `time`, in frames, whose frames before and after are held. See Decoder::Interpolate().
-  Status Interpolate(double time, Positions& positions);
+  // Gives the shape at `time`, in frames, whose frames before and after are held. See Decoder::Interpolate().
+  Status Interpolate(double time, FrameOutput& output);
 
  private:
   // A frame that is reconstructed before it is asked for.
@@ -55,6 +62,8 @@ class FrameSource {
   };
 
   const CodedFrames::Frame* Find(std::uint32_t frame) const;
+  // Gives the coefficients of the blend of a frame with these planes and transform.
+  void Blend(const FramePlanes& planes, const RigidTransform& transform, FrameOutput& output);
   Status ReconstructWith(Reconstructor& with, std::uint32_t frame, Positions& positions) const;
   // Reconstructs a batch of frames from `frame` on, each job a run of them. kInvalidArgument when run_jobs throws.
   Status ReconstructAhead(std::uint32_t frame, std::uint32_t step);

@@ -4,13 +4,24 @@
 #include <string>
 #include <utility>
 
-#include "format/group_structure.h"
+#include "format/group.h"
 
 namespace sac {
 namespace {
 
 Status AtFrame(std::uint32_t frame, const Status& s) {
   return {s.code(), "frame " + std::to_string(frame) + ": " + s.message()};
+}
+
+// The frames of `group` by time. `coded` holds those of the first slots; what it does not reach is not whole.
+CodedFrames InDisplayOrder(const GroupSyntax& group, const std::vector<FrameSlot>& slots,
+                           std::vector<FrameCoefficients> coded, const std::vector<bool>& intra) {
+  CodedFrames out;
+  out.first = group.first_frame;
+  out.frames.assign(group.frames, {});
+  for (CodedFrames::Frame& frame : out.frames) frame.whole = false;
+  for (std::size_t i = 0; i < coded.size(); ++i) out.frames[slots[i].display] = {std::move(coded[i]), intra[i], true};
+  return out;
 }
 
 }  // namespace
@@ -26,10 +37,18 @@ Status GroupParser::CheckSize(std::uint32_t frames) const {
   return Status::Ok();
 }
 
-Status GroupParser::ParseFrame(const FrameSlot& slot, RangeDecoder& range, FrameCoder<RangeDecoder>& coder,
-                               bool& intra) const {
+Status GroupParser::CheckGroup(const GroupSyntax& group) const {
+  SAC_RETURN_IF_ERROR(CheckSize(group.frames));
+  if (header_.references_previous() && (group.pyramid != 1 || group.layered()))
+    return Status::Corrupt("group: B-frames or layers against the previous frame");
+  return Status::Ok();
+}
+
+Status GroupParser::ParseFrame(const FrameSlot& slot, bool layered, RangeDecoder& range,
+                               FrameCoder<RangeDecoder>& coder, bool& intra) const {
   FrameSyntax frame;
-  if (!coder.Code(range, slot, frame)) return Status::Corrupt("malformed coefficients");
+  const bool good = layered ? coder.CodeBase(range, slot, frame) : coder.Code(range, slot, frame);
+  if (!good) return Status::Corrupt("malformed coefficients");
   if (header_.references_previous() && !frame.intra() && frame.slot.references != slot.references) {
     return Status::Corrupt("not predicted from the frame before");
   }
@@ -39,9 +58,7 @@ Status GroupParser::ParseFrame(const FrameSlot& slot, RangeDecoder& range, Frame
 
 Status GroupParser::Parse(const GroupSyntax& group, std::span<const std::uint8_t> code, bool cut,
                           CodedFrames& out) const {
-  SAC_RETURN_IF_ERROR(CheckSize(group.frames));
-  if (header_.references_previous() && group.pyramid != 1)
-    return Status::Corrupt("group: B-frames against the previous frame");
+  SAC_RETURN_IF_ERROR(CheckGroup(group));
   RangeDecoder range(code);
   FrameCoder<RangeDecoder> coder(header_, layouts_);
   const std::vector<FrameSlot> structure = GroupStructure(group.frames, group.pyramid);
@@ -49,7 +66,7 @@ Status GroupParser::Parse(const GroupSyntax& group, std::span<const std::uint8_t
   std::size_t parsed = 0;
   for (; parsed < structure.size(); ++parsed) {
     bool is_intra = false;
-    const Status s = ParseFrame(structure[parsed], range, coder, is_intra);
+    const Status s = ParseFrame(structure[parsed], false, range, coder, is_intra);
     if (cut && (!s.ok() || !range.IsCertain())) break;
     if (!s.ok()) return AtFrame(group.first_frame + structure[parsed].display, s);
     intra[parsed] = is_intra;
@@ -57,13 +74,55 @@ Status GroupParser::Parse(const GroupSyntax& group, std::span<const std::uint8_t
   if (cut && parsed == 0) return Status::Corrupt("group: no frame is whole");
   if (!cut && !range.AtEnd()) return Status::Corrupt("group: bytes after the last frame");
   std::vector<FrameCoefficients> coded = coder.TakeFrames();
-  out.first = group.first_frame;
-  out.frames.assign(group.frames, {});
-  for (CodedFrames::Frame& frame : out.frames) frame.whole = false;
-  for (std::size_t i = 0; i < parsed; ++i) {
-    out.frames[structure[i].display] = {std::move(coded[i]), intra[i], true};
-  }
+  coded.resize(parsed);  // without one that only seems to be whole
+  out = InDisplayOrder(group, structure, std::move(coded), intra);
   return Status::Ok();
+}
+
+Status GroupParser::CountLayers(const GroupSyntax& group, std::size_t& layers) const {
+  SAC_RETURN_IF_ERROR(CheckGroup(group));
+  const std::vector<FrameSlot> slots = LayeredOrder(GroupStructure(group.frames, group.pyramid), group.base_levels);
+  layers = LayersOf(slots, group.base_levels, layouts_).size();
+  return Status::Ok();
+}
+
+Status GroupParser::ParseLayers(const GroupSyntax& group, std::span<const std::vector<std::uint8_t>> codes,
+                                CodedFrames& out) const {
+  SAC_RETURN_IF_ERROR(CheckGroup(group));
+  FrameCoder<RangeDecoder> coder(header_, layouts_);
+  const std::vector<FrameSlot> slots = LayeredOrder(GroupStructure(group.frames, group.pyramid), group.base_levels);
+  const std::vector<GroupLayer> layers = LayersOf(slots, group.base_levels, layouts_);
+  std::vector<bool> intra(slots.size());
+  std::size_t coded_frames = 0;
+  for (std::size_t i = 0; i < codes.size(); ++i) {
+    Status status = ParseLayer(layers[i], slots, codes[i], coder, intra);
+    if (!status.ok())
+      return {status.code(), "group of frame " + std::to_string(group.first_frame) + ", layer " + std::to_string(i) +
+                                 ": " + status.message()};
+    if (layers[i].has_frames()) coded_frames = layers[i].end;
+  }
+  for (; coded_frames < slots.size(); ++coded_frames) {
+    if (!coder.Skip(slots[coded_frames])) return Status::Corrupt("group: coefficients out of range");
+  }
+  out = InDisplayOrder(group, slots, coder.TakeFrames(), intra);
+  return Status::Ok();
+}
+
+Status GroupParser::ParseLayer(const GroupLayer& layer, const std::vector<FrameSlot>& slots,
+                               std::span<const std::uint8_t> code, FrameCoder<RangeDecoder>& coder,
+                               std::vector<bool>& intra) const {
+  RangeDecoder range(code);
+  FrameSyntax frame;
+  for (std::size_t i = layer.first; i < layer.end; ++i) {
+    bool is_intra = false;
+    if (layer.has_frames()) {
+      SAC_RETURN_IF_ERROR(ParseFrame(slots[i], true, range, coder, is_intra));
+      intra[i] = is_intra;
+    } else if (!coder.CodeLater(range, i, layer.plane, frame)) {
+      return Status::Corrupt("malformed coefficients");
+    }
+  }
+  return range.AtEnd() ? Status::Ok() : Status::Corrupt("bytes after the last frame");
 }
 
 void GroupParser::Open(std::uint32_t first_frame) {
@@ -78,7 +137,7 @@ Status GroupParser::ParseNext(std::span<const std::uint8_t> code, CodedFrames& o
   const std::uint32_t number = open_first_ + index;
   RangeDecoder range(code);
   bool intra = false;
-  if (const Status s = ParseFrame(ChainSlot(index), range, *open_, intra); !s.ok()) return AtFrame(number, s);
+  if (const Status s = ParseFrame(ChainSlot(index), false, range, *open_, intra); !s.ok()) return AtFrame(number, s);
   if (!range.AtEnd()) return AtFrame(number, Status::Corrupt("bytes after its end"));
   out.first = number;
   out.frames.assign(1, {open_->predictor().frames().back(), intra, true});

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 #include <utility>
 
-#include "format/bytes.h"
 #include "format/crc32.h"
-#include "format/group_syntax.h"
-#include "format/packet.h"
+#include "format/group.h"
 
 namespace sac {
 namespace {
@@ -24,13 +23,14 @@ std::uint32_t FrameAfter(double time) { return static_cast<std::uint32_t>(std::c
 }  // namespace
 
 GroupSequence::GroupSequence(const SequenceHeader& header, Shape& shape, const DecoderSettings& settings,
-                             DamagePolicy& damage, std::uint64_t first_frame)
+                             DamagePolicy& damage, const Position& position)
     : header_(header),
       settings_(settings),
       damage_(damage),
       source_(shape, header, ThreadsFor(header, settings, shape), settings.run_jobs),
       parser_(header, shape, settings.limits),
-      next_frame_(first_frame) {}
+      next_frame_(position.next_frame),
+      wanted_(position.wanted) {}
 
 Status GroupSequence::ContinueAt(std::uint32_t frame) {
   const std::uint64_t expected = next_frame_.value_or(frame);
@@ -42,13 +42,17 @@ Status GroupSequence::ContinueAt(std::uint32_t frame) {
       expected, frame);
 }
 
-Status GroupSequence::TakeGroup(std::span<const std::uint8_t> payload, std::uint64_t begin, SeekTable& places) {
-  GroupSyntax group;
-  std::span<const std::uint8_t> code;
-  Status status = ParseGroup(payload, group, code);
-  if (status.ok()) status = ContinueAt(group.first_frame);
-  if (!status.ok()) return damage_.Judge(std::move(status));
-  places.Add(begin, group.first_frame);
+Status GroupSequence::TakeGroup(const GroupSyntax& group, std::span<const std::uint8_t> code,
+                                std::span<const std::uint8_t> payload, std::uint64_t begin, SeekTable& places) {
+  layered_.reset();
+  if (group.layered()) {
+    layered_.emplace().group = group;
+    if (Status status = parser_.CountLayers(group, layered_->count); !status.ok()) {
+      return damage_.Judge(std::move(status));
+    }
+  }
+  if (Status status = ContinueAt(group.first_frame); !status.ok()) return damage_.Judge(std::move(status));
+  places.Add(begin, group.first_frame, group.segment);
   if (group.open()) {
     parser_.Open(group.first_frame);
     group_begins_ = true;
@@ -62,14 +66,58 @@ Status GroupSequence::TakeGroup(std::span<const std::uint8_t> payload, std::uint
 
 Status GroupSequence::ReadGroup(const GroupSyntax& group, std::span<const std::uint8_t> code, const HeldGroup& sent) {
   if (held_ == sent) {  // a seek went back to the group that is held
-    SAC_RETURN_IF_ERROR(source_.Restart());
-  } else {
-    held_.reset();
-    CodedFrames frames;
-    SAC_RETURN_IF_ERROR(parser_.Parse(group, code, false, frames));
-    SAC_RETURN_IF_ERROR(source_.Take(std::move(frames), true));
-    held_ = sent;
+    source_.Restart();
+    next_out_ = group.first_frame;
+    return Status::Ok();
   }
+  held_.reset();
+  if (group.layered()) return OpenLayers(code, sent);
+  CodedFrames frames;
+  SAC_RETURN_IF_ERROR(parser_.Parse(group, code, false, frames));
+  source_.Take(std::move(frames), true);
+  held_ = sent;
+  next_out_ = group.first_frame;
+  return Status::Ok();
+}
+
+Status GroupSequence::OpenLayers(std::span<const std::uint8_t> code, const HeldGroup& sent) {
+  LayeredGroup& layered = *layered_;
+  layered.sent = sent;
+  layered.wanted = std::min<std::size_t>(layered.count, std::max(1u, settings_.layers));
+  return KeepLayer(code);
+}
+
+Status GroupSequence::KeepLayer(std::span<const std::uint8_t> code) {
+  LayeredGroup& layered = *layered_;
+  layered.bytes += code.size();
+  if (layered.bytes > settings_.limits.memory / 4) return Status::Limit("a group of layers larger than the limit");
+  layered.codes.emplace_back(code.begin(), code.end());
+  return layered.codes.size() == layered.wanted ? DoWithoutLayers() : Status::Ok();
+}
+
+Status GroupSequence::TakeLayer(std::span<const std::uint8_t> payload) {
+  LayerSyntax layer;
+  std::span<const std::uint8_t> code;
+  if (Status status = ParseLayer(payload, layer, code); !status.ok()) return damage_.Judge(std::move(status));
+  if (!layered_ || layered_->group.first_frame != layer.first_frame || layer.layer != layered_->next ||
+      layer.layer >= layered_->count) {
+    return damage_.Judge(Status::Corrupt("layer " + std::to_string(layer.layer) + " of the group of frame " +
+                                         std::to_string(layer.first_frame) + ": out of place"));
+  }
+  ++layered_->next;
+  return WaitsForLayers() ? KeepLayer(code) : Status::Ok();  // frames that are read go without the rest
+}
+
+Status GroupSequence::DoWithoutLayers() {
+  LayeredGroup& layered = *layered_;
+  const std::vector<std::vector<std::uint8_t>> codes = std::exchange(layered.codes, {});
+  CodedFrames frames;
+  const GroupSyntax& group = layered.group;
+  if (Status status = parser_.ParseLayers(group, codes, frames); !status.ok()) {
+    return damage_.Judge(std::move(status), group.first_frame, std::uint64_t{group.first_frame} + group.frames);
+  }
+  source_.Take(std::move(frames), true);
+  if (codes.size() == layered.wanted) held_ = layered.sent;
   next_out_ = group.first_frame;
   return Status::Ok();
 }
@@ -82,7 +130,7 @@ Status GroupSequence::TakeFrame(std::span<const std::uint8_t> payload) {
     next_out_ = frames.first;
     next_frame_ = frames.end();
     held_.reset();
-    status = source_.Take(std::move(frames), std::exchange(group_begins_, false));
+    source_.Take(std::move(frames), std::exchange(group_begins_, false));
   }
   if (status.ok()) return status;
   status = damage_.Judge(std::move(status));
@@ -90,15 +138,8 @@ Status GroupSequence::TakeFrame(std::span<const std::uint8_t> payload) {
   return status;
 }
 
-void GroupSequence::TakeCutPacket(std::span<const std::uint8_t> packet, std::optional<std::uint32_t> total_frames) {
-  ByteReader reader(packet);
-  const std::uint32_t tag = reader.Varint();
-  if (!reader.ok() || static_cast<PacketType>(tag & 3) != PacketType::kGroup) return;
-  auto payload = packet.subspan(reader.position());
-  payload = payload.first(std::min<std::size_t>(payload.size(), tag / 4));  // the check may have begun
-  GroupSyntax group;
-  std::span<const std::uint8_t> code;
-  if (!ParseGroup(payload, group, code).ok() || group.open()) return;
+void GroupSequence::TakeCutGroup(const GroupSyntax& group, std::span<const std::uint8_t> code,
+                                 std::optional<std::uint32_t> total_frames) {
   // The packet's CRC-32 is missing, so its numbers are trusted only when they fit.
   const std::uint64_t end = std::uint64_t{group.first_frame} + group.frames;
   if (next_frame_.value_or(group.first_frame) != group.first_frame) return;
@@ -109,7 +150,8 @@ void GroupSequence::TakeCutPacket(std::span<const std::uint8_t> packet, std::opt
   while (!frames.frames.back().whole) frames.frames.pop_back();
   held_.reset();
   damage_.Lose(frames.end(), end);
-  if (source_.Take(std::move(frames), true).ok()) next_out_ = group.first_frame;
+  source_.Take(std::move(frames), true);
+  next_out_ = group.first_frame;
 }
 
 Status GroupSequence::CheckEnd(std::uint32_t frames) {
@@ -120,12 +162,12 @@ Status GroupSequence::CheckEnd(std::uint32_t frames) {
   return frames > *next_frame_ ? damage_.Judge(std::move(status), *next_frame_, frames) : status;
 }
 
-Status GroupSequence::NextFrame(Positions& positions, std::optional<std::uint32_t>& shown) {
+Status GroupSequence::NextFrame(FrameOutput& output, std::optional<std::uint32_t>& shown) {
   shown.reset();
   const auto frame = static_cast<std::uint32_t>(next_out_++);
   const bool is_shown = frame >= wanted_ && frame % settings_.frame_step == 0;
   if (!is_shown && !header_.references_previous()) return Status::Ok();
-  Status status = source_.Reconstruct(frame, settings_.frame_step, positions);
+  Status status = source_.Reconstruct(frame, settings_.frame_step, output);
   if (!status.ok()) return damage_.Judge(std::move(status), frame, std::uint64_t{frame} + 1);
   if (is_shown) shown = frame;
   return Status::Ok();
@@ -144,13 +186,14 @@ Status GroupSequence::CanCome(double time) const {
   return Status::InvalidArgument(frames + "gone");
 }
 
-Status GroupSequence::Interpolate(double time, Positions& positions) {
+Status GroupSequence::Interpolate(double time, FrameOutput& output) {
   wanted_ = std::max<std::uint64_t>(wanted_, FrameAfter(time));
-  return source_.Interpolate(time, positions);
+  return source_.Interpolate(time, output);
 }
 
 void GroupSequence::Seek(std::optional<std::uint32_t> first_frame, std::uint32_t wanted) {
   parser_.Close();
+  layered_.reset();
   next_frame_ = first_frame;
   if (!held_) source_.Drop();  // frames of an open or cut group cannot be recognized when they are sent again
   PassOverFrames();

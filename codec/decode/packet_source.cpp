@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "format/group_syntax.h"
+#include "format/group.h"
 
 namespace sac {
 namespace {

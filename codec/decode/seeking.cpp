@@ -10,12 +10,14 @@
 namespace sac {
 
 Status StreamDecoder::Seek(std::uint32_t frame, std::uint64_t& byte) {
-  if (!groups_) return Status::NeedMoreData();
+  if (!start_.mesh()) return Status::NeedMoreData();
   if (total_frames_ && frame >= *total_frames_) return BeyondTheEnd(frame);
-  const SeekTable::Place place = places_.Find(frame);
+  if (!groups_) SAC_RETURN_IF_ERROR(PrepareGroups());
+  const SeekTable::Place place = places_.Find(frame, start_.segment());
   byte = place.byte;
   packets_.Restart(byte);
   start_.Restart();
+  held_packet_.reset();
   groups_->Seek(place.first_frame, frame);
   error_.reset();
   ended_ = finished_ = false;
@@ -42,25 +44,50 @@ Status StreamDecoder::AddIndex(std::span<const std::uint8_t> tail, std::size_t& 
   return Status::Ok();
 }
 
-Status StreamDecoder::Interpolate(double time, Positions& positions, FrameInfo& info, const FrameBuffers* buffers) {
+template <class CheckOutput>
+Status StreamDecoder::At(double& time, const CheckOutput& check, FrameOutput& output) {
   if (error_) return *error_;
   if (!(time >= 0 && time <= 0xfffffffeu)) return Status::InvalidArgument("a time that is no frame's");
-  if (!groups_) return Status::NeedMoreData();
-  SAC_RETURN_IF_ERROR(Check(buffers));
+  if (!start_.mesh()) return Status::NeedMoreData();
+  if (!groups_) SAC_RETURN_IF_ERROR(Latch(PrepareGroups()));
+  SAC_RETURN_IF_ERROR(check());
   if (start_.header()->references_previous()) {
     return Status::Unsupported("frames measured against the frame before have none between");
   }
   if (total_frames_ && time >= *total_frames_) return BeyondTheEnd(time);
   if (total_frames_) time = std::min(time, *total_frames_ - 1.0);  // the last frame is held for its time
   SAC_RETURN_IF_ERROR(ReadAround(time));
-  SAC_RETURN_IF_ERROR(groups_->Interpolate(time, positions));
+  SAC_RETURN_IF_ERROR(check());  // again, because the mesh may be another one now
+  return groups_->Interpolate(time, output);
+}
+
+Status StreamDecoder::Interpolate(double time, Positions& positions, FrameInfo& info, const FrameBuffers* buffers) {
+  FrameOutput output{&positions};
+  SAC_RETURN_IF_ERROR(At(
+      time, [&] { return Check(buffers); }, output));
   GiveOut(static_cast<std::uint32_t>(time), time, positions, info, buffers);
   return Status::Ok();
 }
 
-Status StreamDecoder::ReadAround(double time) {
-  while (!groups_->HoldsAround(time)) {
-    SAC_RETURN_IF_ERROR(groups_->CanCome(time));
+Status StreamDecoder::InterpolateHandles(double time, std::span<float> matrices, FrameInfo& info, bool& exact) {
+  FrameOutput output;
+  SAC_RETURN_IF_ERROR(At(
+      time, [&] { return CheckHandles(matrices); }, output));
+  Describe(static_cast<std::uint32_t>(time), time, info);
+  info.box = handles_->Fill(*output.blend, matrices);
+  exact = output.exact;
+  return Status::Ok();
+}
+
+Status StreamDecoder::ReadAround(double& time) {
+  while (!groups_ || !groups_->HoldsAround(time)) {
+    if (groups_ && start_.MeshEnds() && groups_->Holds(static_cast<std::uint32_t>(time)) &&
+        groups_->next_frame() == static_cast<std::uint64_t>(time) + 1) {
+      time = std::floor(time);
+      return Status::Ok();
+    }
+    SAC_RETURN_IF_ERROR(groups_ ? groups_->CanCome(time) : Status::Ok());
+    if (!groups_) return Status::NeedMoreData();
     groups_->PassOverFrames();
     if (CanAdvance()) {
       SAC_RETURN_IF_ERROR(AdvanceAlone());

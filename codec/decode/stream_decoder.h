@@ -8,6 +8,7 @@
 
 #include "codec/decode/damage_policy.h"
 #include "codec/decode/group_sequence.h"
+#include "codec/decode/handle_output.h"
 #include "codec/decode/packet_source.h"
 #include "codec/decode/seek_table.h"
 #include "codec/decode/stream_start.h"
@@ -31,12 +32,15 @@ class StreamDecoder {
   // Decodes into `positions`, and copies from there into `buffers` unless that is null. A frame is taken only after the
   // buffers have been checked.
   Status Receive(Positions& positions, FrameInfo& info, const FrameBuffers* buffers);
+  Status ReceiveHandles(std::span<float> matrices, FrameInfo& info, bool& exact);
   Status Finish();
 
   Status Seek(std::uint32_t frame, std::uint64_t& byte);
   Status SeekTime(double seconds, std::uint64_t& byte);
   Status AddIndex(std::span<const std::uint8_t> tail, std::size_t& needed);
   Status Interpolate(double time, Positions& positions, FrameInfo& info, const FrameBuffers* buffers);
+  Status InterpolateHandles(double time, std::span<float> matrices, FrameInfo& info, bool& exact);
+  Status Weights(BlendWeights& weights);
 
   // Makes an error final: later calls return it until a seek.
   Status Latch(Status status) {
@@ -44,7 +48,13 @@ class StreamDecoder {
     return status;
   }
 
+  // Computes what frames need beside the mesh. The basis of the mesh that is there; not that of the next segment.
+  Status Prepare();
+  // Goes on without layers of a group that have not come.
+  Status Flush();
+
   const StreamStart& start() const { return start_; }
+  const std::optional<Metadata>& metadata() const { return metadata_; }
   std::optional<std::uint32_t> total_frames() const { return total_frames_; }
   const LostFrames& lost() const { return damage_.lost(); }
 
@@ -59,18 +69,33 @@ class StreamDecoder {
 
   // Takes a packet that begins at byte `begin` of the stream.
   Status Take(const Packet& packet, std::uint64_t begin);
-  Status TakeIFrame(std::span<const std::uint8_t> payload);
+  Status TakeStart(const Packet& packet, std::uint64_t begin);
+  void TakeSkippable(const Packet& packet);
+  // Takes the whole frames of a group packet that the end of the bytes cuts off.
+  void TakeCutPacket(std::span<const std::uint8_t> packet);
   Status TakeGroup(std::span<const std::uint8_t> payload, std::uint64_t begin);
   Status TakeEnd(std::span<const std::uint8_t> payload, std::uint64_t begin);
   Status ParseAndCheckEnd(std::span<const std::uint8_t> payload, std::uint64_t begin, std::uint32_t& frames);
 
   bool FrameWaits() const { return groups_ && groups_->HasFrame(); }
   Status Check(const FrameBuffers* buffers) const {
-    return buffers ? CheckBuffers(*buffers, start_.shape().vertices()) : Status::Ok();
+    return buffers && start_.mesh() ? CheckBuffers(*buffers, start_.mesh()->positions.size()) : Status::Ok();
   }
+  // Makes groups_ the sequence of the start that came last, whose basis it computes if need be.
+  Status PrepareGroups();
   Status BeyondTheEnd(double time) const;
-  // Reads on until the frames before and after `time` are held.
-  Status ReadAround(double time);
+  // Reads on until the frames before and after `time` are held. At the end of a segment, where the frame after has
+  // another mesh, `time` becomes that of the frame before.
+  Status ReadAround(double& time);
+  // Gives the next frame that is to be shown, once `check` passes for the mesh that it moves.
+  template <class CheckOutput>
+  Status Next(const CheckOutput& check, FrameOutput& output, std::uint32_t& frame);
+  // Gives the shape at `time`, which becomes that of the shape.
+  template <class CheckOutput>
+  Status At(double& time, const CheckOutput& check, FrameOutput& output);
+  // Checks that `matrices` has room for those of the mesh's handles, if the mesh is there.
+  Status CheckHandles(std::span<float> matrices);
+  void Describe(std::uint32_t frame, double time, FrameInfo& info) const;
   void GiveOut(std::uint32_t frame, double time, const Positions& positions, FrameInfo& info,
                const FrameBuffers* buffers);
 
@@ -78,9 +103,18 @@ class StreamDecoder {
   DamagePolicy damage_;
   PacketSource packets_;
   StreamStart start_;
-  std::optional<GroupSequence> groups_;  // once the I-frame has been read
+  std::optional<GroupSequence> groups_;  // of the last start whose basis is there
+  GroupSequence::Position position_;     // while there is none
+  std::uint64_t start_begin_ = 0;        // byte of the last sequence header
+  struct HeldPacket {
+    Packet packet;
+    std::uint64_t begin;
+  };
+  std::optional<HeldPacket> held_packet_;  // came while a group waited for layers; to be taken after its frames
+  std::optional<Metadata> metadata_;
   SeekTable places_;
-  NormalField normals_;  // computes the normals for the caller's buffers
+  std::optional<HandleOutput> handles_;  // of groups_, once it is asked for
+  NormalField normals_;                  // computes the normals for the caller's buffers
   std::optional<std::uint32_t> total_frames_;
   std::optional<Status> error_;
   bool ended_ = false;     // the end packet has been read

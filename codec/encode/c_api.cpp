@@ -5,6 +5,7 @@
 #include <memory>
 #include <new>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "codec/c_status.h"
@@ -73,12 +74,14 @@ void sac_encoder_settings_init(sac_encoder_settings* settings) {
   settings->max_error = settings->target_kg = settings->target_sted = settings->target_bpvf = kChosen;
   settings->motion_step = settings->displacement_step = settings->detail_step = settings->position_bits = kChosen;
   settings->level_growth = defaults.level_growth;
-  settings->samples_per_harmonic = defaults.samples_per_harmonic;
+  settings->handles_per_harmonic = defaults.handles_per_harmonic;
   settings->group = defaults.group;
   settings->pyramid = defaults.pyramid;
   settings->frame_rate_denominator = defaults.frame_rate_denominator;
   settings->index = defaults.index ? 1 : 0;
   settings->max_memory = defaults.limits.memory;
+  settings->reference_rounds = -1;
+  settings->up_axis = settings->loops = -1;
 }
 
 sac_status sac_encoder_open(sac_encoder** encoder, const sac_input_mesh* mesh, const sac_encoder_settings* settings) {
@@ -94,6 +97,17 @@ sac_status sac_encoder_send(sac_encoder* encoder, const float* positions, size_t
   return RunOpen(encoder, [&](sac::Encoder& e) {
     SAC_RETURN_IF_ERROR(sac::ReadPositions(positions, stride, encoder->positions));
     return e.Send(encoder->positions);
+  });
+}
+
+sac_status sac_encoder_begin_segment(sac_encoder* encoder, const sac_input_mesh* mesh) {
+  return RunOpen(encoder, [&](sac::Encoder& e) {
+    sac::Mesh next;
+    SAC_RETURN_IF_ERROR(sac::ReadMesh(mesh, next));
+    std::vector<sac::Vec3f> positions(next.positions.size());
+    SAC_RETURN_IF_ERROR(e.BeginSegment(next));
+    encoder->positions = std::move(positions);
+    return Status::Ok();
   });
 }
 

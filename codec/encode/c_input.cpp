@@ -51,7 +51,7 @@ EncoderSettings ToEncoderSettings(const sac_encoder_settings& s) {
   to.position_bits = Given(s.position_bits);
   to.level_growth = s.level_growth;
   if (s.harmonics != 0) to.harmonics = s.harmonics;
-  to.samples_per_harmonic = s.samples_per_harmonic;
+  to.handles_per_harmonic = s.handles_per_harmonic;
   to.group = s.group;
   to.pyramid = s.pyramid;
   to.low_delay = s.low_delay != 0;
@@ -62,6 +62,14 @@ EncoderSettings ToEncoderSettings(const sac_encoder_settings& s) {
   to.index = s.index != 0;
   to.repeat_start = s.repeat_start;
   to.limits.memory = s.max_memory;
+  to.base_levels = s.base_levels;
+  to.bounds = s.bounds != 0;
+  if (s.name != nullptr) to.metadata.name = s.name;
+  if (s.json != nullptr) to.metadata.json = s.json;
+  if (s.metres_per_unit != 0) to.metadata.metres_per_unit = s.metres_per_unit;
+  if (s.up_axis >= 0) to.metadata.up_axis = static_cast<std::uint8_t>(std::min(s.up_axis, 255));
+  if (s.loops >= 0) to.metadata.loops = s.loops != 0;
+  if (s.has_first_frame != 0) to.metadata.first_frame = s.first_frame;
   std::copy(std::begin(s.offset), std::end(s.offset), to.offset.begin());
   return to;
 }

@@ -64,13 +64,21 @@ std::vector<std::uint32_t> ShareHarmonics(const DecodedMesh& mesh, std::uint32_t
   return counts;
 }
 
+// How many handles each harmonic gets: `wanted`, but one at least, and no more than what keeps a component to
+// kManyHandles of them. Few harmonics gain from several handles each, many do not, and the time of a frame grows with
+// the handles.
+std::uint32_t HandlesPerHarmonic(std::uint32_t wanted, std::span<const std::uint32_t> harmonics) {
+  constexpr std::uint32_t kManyHandles = 800;
+  const std::uint32_t most = *std::max_element(harmonics.begin(), harmonics.end());
+  return std::min(wanted, std::max(1u, kManyHandles / most));
+}
+
 // Chooses the settings that the caller left open, by the quality or by the bound on the error. The steps of
 // displacement and detail are fractions of the RMS radius `rms`, which is in model units.
 Status ChooseDefaults(const Mesh& first, const EncoderSettings& settings, double rms, OperatingPoint& defaults) {
   if (!settings.max_error) {
-    HarmonicLimits limits = HarmonicLimitsOf(static_cast<std::uint32_t>(first.positions.size()));
-    if (settings.harmonics) limits.useful = limits.quick = *settings.harmonics;
-    defaults = PointOfQuality(settings.quality, limits);
+    const double most = MostHarmonics(static_cast<std::uint32_t>(first.positions.size()));
+    defaults = PointOfQuality(settings.quality, most, EdgeScaleOf(first, rms));
     return Status::Ok();
   }
   if (const double least = LeastMaxError(first.positions); *settings.max_error < least) {
@@ -118,7 +126,7 @@ Status Progress(const EncoderSettings& settings) {
 Status FinishIFrame(DecodedMesh mesh, const Limits& limits, IFrameSyntax& syntax, EncodedStart& start) {
   // The fingerprint is not known yet, but the payload's size does not depend on it.
   const Limits of_i_frame = LimitsOfIFrame(limits, WriteIFrame(syntax, start.header).size());
-  if (const Status status = BuildShape(start.header, std::move(mesh), syntax.harmonics, syntax.samples_per_harmonic,
+  if (const Status status = BuildShape(start.header, std::move(mesh), syntax.harmonics, syntax.handles_per_harmonic,
                                        of_i_frame, start.shape);
       !status.ok()) {
     return status.code() == StatusCode::kLimit ? Status::Limit(status.message() + " of decoders") : status;
@@ -147,7 +155,7 @@ Status EncodeStart(const Mesh& first, const EncoderSettings& settings, double sh
 
   syntax.harmonics = ShareHarmonics(
       decoded.mesh, settings.harmonics.value_or(static_cast<std::uint32_t>(std::lround(share * defaults.harmonics))));
-  syntax.samples_per_harmonic = settings.samples_per_harmonic;
+  syntax.handles_per_harmonic = HandlesPerHarmonic(settings.handles_per_harmonic, syntax.harmonics);
   if (settings.keep_order) syntax.order = start.order;
   for (const std::uint32_t count : syntax.harmonics) start.header.harmonics += count;
   SequenceHeader parsed;
@@ -196,7 +204,7 @@ Status EncodeStart(const Mesh& first, const EncoderSettings& settings, EncodedSt
   // Decoders allow less work for a small I-frame, so a large mesh with a small I-frame may get fewer harmonics.
   constexpr double kFewer = 0.9, kFewest = 0.1;
   for (double share = 1;; share *= kFewer) {
-    const Status status = Contain([&] { return EncodeStart(first, settings, share, start); });
+    Status status = Contain([&] { return EncodeStart(first, settings, share, start); });
     if (status.code() != StatusCode::kLimit || settings.harmonics || share < kFewest) return status;
   }
 }
@@ -224,8 +232,8 @@ Status ReadStreamStart(std::span<const std::uint8_t> bytes, const Limits& limits
   SAC_RETURN_IF_ERROR(NextPacket(packets, PacketType::kIFrame, bytes, packet));
   start.header = *decoded.header();
   SAC_RETURN_IF_ERROR(ReadEncoderPart(bytes, start));  // before the shape is built, which takes longer
-  bool is_new = false;
-  SAC_RETURN_IF_ERROR(decoded.TakeIFrame(packet.payload, is_new));
+  SAC_RETURN_IF_ERROR(decoded.TakeIFrame(packet.payload, true));
+  SAC_RETURN_IF_ERROR(decoded.Prepare());
   if (!decoded.order().empty() && decoded.order() != start.order) {
     return Status::Corrupt("stream start: a vertex order that is not the I-frame's");
   }

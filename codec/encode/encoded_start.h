@@ -24,12 +24,13 @@ struct EncodedStart {
   Shape shape;
 };
 
-// Codes the first frame and computes its harmonics. When decoders would refuse the number of harmonics that a quality
+// Codes the I-frame and computes its harmonics. The positions of `mesh` are the shape that all frames are measured
+// from, which the first frame is or is near to. When decoders would refuse the number of harmonics that a quality
 // stands for, fewer are tried. settings.progress is called with 0 between the steps.
 //
 // Returns kInvalidArgument for settings out of range and for a mesh that cannot be coded, kLimit when decoders with
 // settings.limits would refuse the stream or when memory is short, and kCancelled.
-Status EncodeStart(const Mesh& first, const EncoderSettings& settings, EncodedStart& start);
+Status EncodeStart(const Mesh& mesh, const EncoderSettings& settings, EncodedStart& start);
 
 // Returns `start` as bytes: first the bytes that the stream begins with (magic, header packet, I-frame packet), then
 // the members that decoders do not need: the error bound as a little-endian f64, the order as one u32 per vertex, and

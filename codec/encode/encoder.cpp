@@ -12,7 +12,7 @@ namespace sac {
 
 class Encoder::Impl {
  public:
-  Impl(EncodedStart start, const EncoderSettings& settings) : stream(std::move(start), settings) {}
+  Impl(EncodedStart start, const EncoderSettings& s) : settings(s), stream(std::move(start), s) {}
 
   // Runs `call` on the stream and lets no exception leave. After an exception the stream is at an undefined point of a
   // frame or group, so the failure is final.
@@ -21,16 +21,17 @@ class Encoder::Impl {
     return Contain([&] { return call(stream); }, [&](Status status) { return stream.Latch(std::move(status)); });
   }
 
+  const EncoderSettings settings;
   StreamEncoder stream;
 };
 
 Encoder::Encoder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Encoder::~Encoder() = default;
 
-Status Encoder::Create(const Mesh& first_frame, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder) {
+Status Encoder::Create(const Mesh& mesh, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder) {
   const auto create = [&] {
     EncodedStart start;
-    SAC_RETURN_IF_ERROR(EncodeStart(first_frame, settings, start));
+    SAC_RETURN_IF_ERROR(EncodeStart(mesh, settings, start));
     encoder.reset(new Encoder(std::make_unique<Impl>(std::move(start), settings)));
     return Status::Ok();
   };
@@ -39,6 +40,15 @@ Status Encoder::Create(const Mesh& first_frame, const EncoderSettings& settings,
 
 Status Encoder::Send(std::span<const Vec3f> positions) {
   return impl_->Do([&](StreamEncoder& stream) { return stream.Send(positions); });
+}
+
+Status Encoder::BeginSegment(const Mesh& mesh) {
+  const auto begin = [&] {
+    EncodedStart start;
+    SAC_RETURN_IF_ERROR(EncodeStart(mesh, impl_->settings, start));
+    return impl_->Do([&](StreamEncoder& stream) { return stream.BeginSegment(std::move(start)); });
+  };
+  return Contain(begin);
 }
 
 Status Encoder::Finish() {

@@ -68,8 +68,6 @@ FrameEncoder::FrameEncoder(const Shape& shape, const SequenceHeader& header, dou
              PlaneUnits(shape, header, kDetail)},
       reconstructor_(shape, header) {}
 
-Status FrameEncoder::StartGroup() { return reconstructor_.StartGroup() ? Status::Ok() : MotionTooFar(); }
-
 Status FrameEncoder::StartFrame(bool intra) { return reconstructor_.StartFrame(intra) ? Status::Ok() : MotionTooFar(); }
 
 void FrameEncoder::Show(const FrameCoefficients& frame) { reconstructor_.Reconstruct(frame); }

@@ -37,9 +37,10 @@ class FrameEncoder {
   // model units; it has no meaning without a correction plane.
   FrameEncoder(const Shape& shape, const SequenceHeader& header, double max_error);
 
-  // Begins a group. kInvalidArgument when the reference shape cannot be factorized.
-  Status StartGroup();
-  // Begins a frame, which sets the shape that its motion is measured against. kInvalidArgument likewise.
+  // Begins a group.
+  void StartGroup() { reconstructor_.StartGroup(); }
+  // Begins a frame, which sets the shape that its motion is measured against. kInvalidArgument when its linear system
+  // cannot be factorized.
   Status StartFrame(bool intra);
   // Tells the reconstruction of a frame that was not chosen by Choose().
   void Show(const FrameCoefficients& frame);

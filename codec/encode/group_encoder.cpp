@@ -75,7 +75,7 @@ Status GroupEncoder::Encode(std::vector<PositionMatrix> frames, const std::vecto
   for (const FrameSlot& slot : structure) group.rigid[slot.display] = ChooseRigid(targets[slot.display], slot, group);
   std::vector<Eigen::MatrixXd> motion(group.frames.size());
   failed_frame_ = failed_vertex_ = 0;
-  SAC_RETURN_IF_ERROR(frame_encoder_.StartGroup());
+  frame_encoder_.StartGroup();
   if (frame_encoder_.UsesKeyReference()) {
     for (std::size_t t = 0; t < motion.size(); ++t) {
       motion[t] = frame_encoder_.MeasureMotion(group.frames[t], group.rigid[t]);
@@ -96,7 +96,7 @@ Status GroupEncoder::EncodeNext(PositionMatrix positions, std::uint32_t index, F
   failed_vertex_ = 0;
   if (index == 0) {
     chain_ = NewGroup();
-    SAC_RETURN_IF_ERROR(frame_encoder_.StartGroup());
+    frame_encoder_.StartGroup();
   }
   GroupInProgress& group = *chain_;
   group.structure.push_back(ChainSlot(index));

@@ -10,6 +10,8 @@
 namespace sac {
 namespace {
 
+constexpr std::size_t kMaxText = 1 << 20;  // bytes
+
 // Whether `corners`, if there are any, are those of all triangles and index `count` values named `what`.
 Status CheckCorners(const Mesh& mesh, const std::vector<Triangle>& corners, std::size_t count,
                     const std::string& what) {
@@ -21,13 +23,30 @@ Status CheckCorners(const Mesh& mesh, const std::vector<Triangle>& corners, std:
   return Status::Ok();
 }
 
+Status CheckPackets(const EncoderSettings& s) {
+  if (s.metadata.metres_per_unit && !(std::isfinite(*s.metadata.metres_per_unit) && *s.metadata.metres_per_unit > 0)) {
+    return Status::InvalidArgument("the length of a unit must be positive");
+  }
+  if (s.metadata.up_axis.value_or(0) > 2) return Status::InvalidArgument("the up axis must be from 0 to 2");
+  if (std::max(s.metadata.name.size(), s.metadata.json.size()) > kMaxText) {
+    return Status::InvalidArgument("a name or metadata of more than " + std::to_string(kMaxText) + " bytes");
+  }
+  for (const ExtraPacket& packet : s.extra_packets) {
+    if (packet.type < 8 || packet.type > 15) return Status::InvalidArgument("types of extra packets are from 8 to 15");
+    if (packet.payload.size() > s.limits.expert.packet_bytes) {
+      return Status::InvalidArgument("an extra packet larger than the limit");
+    }
+  }
+  return Status::Ok();
+}
+
 }  // namespace
 
 Status CheckSettings(const EncoderSettings& s) {
   const auto positive = [](const std::optional<double>& v) { return !v || (std::isfinite(*v) && *v > 0); };
   if (!(s.quality >= 0 && s.quality <= 100)) return Status::InvalidArgument("quality must be from 0 to 100");
   if (s.harmonics && *s.harmonics == 0) return Status::InvalidArgument("at least one harmonic is needed");
-  if (s.samples_per_harmonic > 64) return Status::InvalidArgument("a reduced basis has at most 64 samples a harmonic");
+  if (s.handles_per_harmonic > 64) return Status::InvalidArgument("there are at most 64 handles a harmonic");
   if (s.group == 0 || s.group > s.limits.expert.frames_per_group) {
     return Status::InvalidArgument("a group holds from 1 to " + std::to_string(s.limits.expert.frames_per_group) +
                                    " frames");
@@ -49,7 +68,10 @@ Status CheckSettings(const EncoderSettings& s) {
     return Status::InvalidArgument("the offset is not finite");
   }
   if (s.frame_rate_denominator == 0) return Status::InvalidArgument("the frame rate's denominator is zero");
-  return Status::Ok();
+  if (s.base_levels > 0 && (s.low_delay || s.reference_shape == ReferenceShape::kPrevious)) {
+    return Status::InvalidArgument("layers need B-frames measured against the mesh");
+  }
+  return CheckPackets(s);
 }
 
 Status CheckMesh(const Mesh& mesh, const Limits& limits) {

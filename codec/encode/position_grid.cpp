@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdint>
 
+#include "codec/encode/edge_length.h"
 #include "geometry/bounding_box.h"
 
 namespace sac {
@@ -17,21 +18,6 @@ constexpr int kGridBits = 5;
 // The share of a step that grows with the edges; the rest is the same everywhere.
 constexpr double kStepByEdges = 0.8;
 constexpr double kLongestStep = 0.5;  // largest growing share of a step, in edge lengths
-
-// The median length of the triangles' edges, in cells; 0 without any.
-double MedianEdge(const std::vector<std::array<double, 3>>& cells, const std::vector<Triangle>& triangles) {
-  std::vector<double> lengths;
-  for (const Triangle& t : triangles) {
-    for (std::size_t k = 0; k < 3; ++k) {
-      const auto &a = cells[t[k]], &b = cells[t[(k + 1) % 3]];
-      lengths.push_back(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]));
-    }
-  }
-  if (lengths.empty()) return 0;
-  const auto middle = lengths.begin() + static_cast<std::ptrdiff_t>(lengths.size() / 2);
-  std::nth_element(lengths.begin(), middle, lengths.end());
-  return *middle;
-}
 
 }  // namespace
 
@@ -53,7 +39,7 @@ Status ChooseGrid(const Mesh& mesh, double bits, bool by_edges, SequenceHeader& 
     }
   }
   const double step = std::exp2(header.position_bits - bits);
-  const double edge = by_edges ? MedianEdge(targets.cells, mesh.triangles) : 0;
+  const double edge = by_edges ? MedianEdge<double>(targets.cells, mesh.triangles) : 0;
   // Steps that are about as long as the edges do not follow them.
   const bool follows = edge > 0 && kStepByEdges * step / edge < kLongestStep;
   const double share = follows ? kStepByEdges : 0;

@@ -77,7 +77,7 @@ class Search {
       residual[j] = static_cast<std::int32_t>(steps);
       offset[j] = 16 * at - p.centre[axis];
       point[axis] = static_cast<double>(at);
-      const double scale = std::max(static_cast<double>(p.activity) / 16, 0.5 * step);
+      const double scale = std::max(static_cast<double>(p.near_miss) / 16, 0.5 * step);
       Try(j + 1, residual, offset, point, rate + std::abs(steps) * step / scale);
     }
   }
@@ -106,21 +106,21 @@ class Search {
 
 }  // namespace
 
-std::vector<std::uint8_t> EncodePositions(std::span<const std::array<double, 3>> cells, const PositionGraph& graph,
-                                          const PositionSteps& steps, int bits) {
+RecordedBins EncodePositions(std::span<const std::array<double, 3>> cells, const PositionGraph& graph,
+                             const PositionSteps& steps, int bits) {
   PositionPredictor predictor(graph, steps, bits);
-  PositionCoder<RangeEncoder> coder;
-  RangeEncoder range;
+  PositionCoder<RecordedBins> coder;
+  RecordedBins bins;
   Search search(cells, graph, predictor, bits);
   for (const std::uint32_t v : graph.CodingOrder()) {
     predictor.Predict(v);
     PositionResidual residual = search.Choose();
     GridPosition position;
-    coder.Code(range, predictor, bits, residual, position);
+    coder.Code(bins, predictor, bits, residual, position);
     predictor.Learn(position);
     search.Place(position);
   }
-  return range.Finish();
+  return bins;
 }
 
 }  // namespace sac

@@ -24,41 +24,43 @@ Eigen::MatrixXd InOrder(const HarmonicBasis& basis, const std::vector<Eigen::Mat
   return rows;
 }
 
+// The matrix Z^T Psi^T M Psi Z of a component's harmonics.
+Eigen::MatrixXd Gram(const Shape& shape, std::size_t c, const VertexMatrix& m) {
+  const Eigen::MatrixXd& z = shape.basis.components[c].vectors;
+  const Eigen::SparseMatrix<double> functions = shape.blend.Congruence(c, shape.graph, m);
+  return z.transpose() * (functions.selfadjointView<Eigen::Lower>() * z);
+}
+
 }  // namespace
 
 Projection::Projection(const Shape& shape, const Eigen::VectorXd& areas)
     : shape_(shape), areas_(areas.sum() > 0 ? (areas / areas.sum()).eval() : areas) {
-  std::vector<std::vector<std::size_t>> triangles(shape.components.size());
-  std::vector<std::uint32_t> component(shape.vertices());
-  for (std::size_t i = 0; i < shape.components.size(); ++i) {
-    const Component& c = shape.components[i];
-    std::fill_n(component.begin() + c.first, c.count, static_cast<std::uint32_t>(i));
-  }
-  for (std::size_t j = 0; j < shape.triangles.size(); ++j) triangles[component[shape.triangles[j][0]]].push_back(j);
-
-  for (std::size_t i = 0; i < shape.components.size(); ++i) {
-    const ComponentHarmonics& c = shape.basis.components[i];
-    Eigen::MatrixXd means(static_cast<Eigen::Index>(triangles[i].size()), c.vectors.cols());
-    for (std::size_t r = 0; r < triangles[i].size(); ++r) {
-      const std::size_t j = triangles[i][r];
-      const Triangle& t = shape.triangles[j];
-      const std::uint32_t first = c.component.first;
-      means.row(static_cast<Eigen::Index>(r)) =
-          (c.vectors.row(t[0] - first) + c.vectors.row(t[1] - first) + c.vectors.row(t[2] - first)) *
-          (std::sqrt(areas_[static_cast<Eigen::Index>(j)]) / 3);
+  // A triangle's value is the mean of those of its corners, so its area counts a ninth for each pair of corners.
+  Eigen::VectorXd at_vertices = Eigen::VectorXd::Zero(static_cast<Eigen::Index>(shape.vertices()));
+  std::vector<double> at_edges(shape.edges.ends.size(), 0.0);
+  for (std::size_t j = 0; j < shape.triangles.size(); ++j) {
+    const double share = areas_[static_cast<Eigen::Index>(j)] / 9;
+    for (std::size_t k = 0; k < 3; ++k) {
+      at_vertices[shape.triangles[j][k]] += share;
+      const std::uint32_t e = shape.edges.of_triangle[j][k];
+      if (e != EdgeList::kNone) at_edges[e] += share;
     }
-    systems_.push_back({Factor(means.transpose() * means), Factor(c.vectors.transpose() * c.vectors)});
+  }
+  const Eigen::VectorXd ones = Eigen::VectorXd::Ones(at_vertices.size());
+  for (std::size_t c = 0; c < shape.components.size(); ++c) {
+    systems_.push_back({Factor(Gram(shape, c, {at_vertices, at_edges})), Factor(Gram(shape, c, {ones, {}}))});
   }
 }
 
 Eigen::MatrixXd Projection::Solve(const Eigen::MatrixXd& at_vertices,
                                   Eigen::LDLT<Eigen::MatrixXd> Systems::*system) const {
+  const Eigen::MatrixXd of_functions = shape_.blend.TransposeTimes(at_vertices);
   std::vector<Eigen::MatrixXd> solutions;
   for (std::size_t i = 0; i < systems_.size(); ++i) {
     const ComponentHarmonics& c = shape_.basis.components[i];
     solutions.push_back(
         (systems_[i].*system)
-            .solve(c.vectors.transpose() * at_vertices.middleRows(c.component.first, c.component.count)));
+            .solve(c.vectors.transpose() * of_functions.middleRows(c.functions.first, c.functions.count)));
   }
   return InOrder(shape_.basis, solutions);
 }

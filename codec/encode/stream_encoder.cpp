@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "codec/encode/stream_encoder.h"
 
+#include <algorithm>
 #include <cstddef>
 #include <string>
 
 #include "codec/encode/input_check.h"
-#include "format/group_structure.h"
+#include "format/group.h"
+#include "format/metadata.h"
+#include "geometry/bounding_box.h"
 
 namespace sac {
 namespace {
@@ -27,9 +30,13 @@ StreamEncoder::StreamEncoder(EncodedStart start, const EncoderSettings& settings
     : start_(std::move(start)),
       settings_(settings),
       info_(InfoOf(start_.header)),
-      encoder_(start_.shape, start_.header, start_.max_error),
       writer_(settings.index, settings.repeat_start) {
+  encoder_.emplace(start_.shape, start_.header, start_.max_error);
   writer_.Start(WriteSequenceHeader(start_.header), start_.i_frame);
+  if (!settings.metadata.empty()) writer_.Skippable(PacketType::kMetadata, WriteMetadata(settings.metadata));
+  for (const ExtraPacket& packet : settings.extra_packets) {
+    writer_.Skippable(static_cast<PacketType>(packet.type), packet.payload);
+  }
 }
 
 Status StreamEncoder::AtFault(Status status, std::uint32_t frame, std::optional<std::uint32_t> vertex) {
@@ -41,7 +48,7 @@ Status StreamEncoder::AtFault(Status status, std::uint32_t frame, std::optional<
 }
 
 Status StreamEncoder::AtFault(Status status, std::uint32_t first) {
-  return AtFault(std::move(status), first + encoder_.failed_frame(), start_.order[encoder_.failed_vertex()]);
+  return AtFault(std::move(status), first + encoder_->failed_frame(), start_.order[encoder_->failed_vertex()]);
 }
 
 Status StreamEncoder::Send(std::span<const Vec3f> positions) {
@@ -54,6 +61,7 @@ Status StreamEncoder::Send(std::span<const Vec3f> positions) {
                    frame, std::nullopt);
   }
   SAC_RETURN_IF_ERROR(AtFault(CheckFinite(positions), frame, std::nullopt));
+  if (settings_.bounds) AddBounds(positions);
   PositionMatrix ordered = InDecodedOrder(positions, start_.order);
   if (settings_.low_delay) return Latch(EncodeFrame(std::move(ordered)));
   waiting_.push_back(std::move(ordered));
@@ -73,7 +81,7 @@ Status StreamEncoder::EncodeFrame(PositionMatrix positions) {
   }
   FrameSyntax frame;
   SAC_RETURN_IF_ERROR(
-      AtFault(encoder_.EncodeNext(std::move(positions), open_frames_, frame), writer_.frames() - open_frames_));
+      AtFault(encoder_->EncodeNext(std::move(positions), open_frames_, frame), writer_.frames() - open_frames_));
   RangeEncoder range;  // a coder of its own, since each frame is a record; the models in coder_ continue
   FrameBits bits;
   if (!coder_->Code(range, ChainSlot(open_frames_), frame, &bits)) return AtFault(MotionTooFar(), writer_.frames(), {});
@@ -88,23 +96,77 @@ void StreamEncoder::EndOpenGroup() {
 }
 
 Status StreamEncoder::EncodeGroup() {
-  const auto frames = static_cast<std::uint32_t>(waiting_.size());
-  const std::uint32_t pyramid = start_.header.references_previous() ? 1 : settings_.pyramid;
-  const std::vector<FrameSlot> structure = GroupStructure(frames, pyramid);
-  std::vector<FrameSyntax> coded;
-  RangeEncoder range;
-  FrameCoder<RangeEncoder> coder(start_.header, start_.shape.layouts);
-  FrameBits bits;
+  GroupSyntax group;
+  group.frames = static_cast<std::uint32_t>(waiting_.size());
+  // A pyramid larger than the group is as one of its size.
+  group.pyramid = start_.header.references_previous() ? 1 : std::min(settings_.pyramid, group.frames);
+  group.base_levels = start_.header.references_previous() ? 0 : settings_.base_levels;
+  std::vector<FrameSlot> structure = GroupStructure(group.frames, group.pyramid);
+  if (group.layered()) structure = LayeredOrder(structure, group.base_levels);
   const std::uint32_t before = writer_.frames();
   const auto frame_done = [&](std::uint32_t count) { return Progress(before + count); };
-  SAC_RETURN_IF_ERROR(AtFault(encoder_.Encode(std::exchange(waiting_, {}), structure, frame_done, coded), before));
-  for (std::size_t i = 0; i < coded.size(); ++i) {
-    if (!coder.Code(range, structure[i], coded[i], &bits)) {
-      return AtFault(MotionTooFar(), before + structure[i].display, {});
-    }
-  }
-  writer_.Group({frames, writer_.frames(), pyramid}, range.Finish(), bits);
+  std::vector<FrameSyntax> coded;
+  SAC_RETURN_IF_ERROR(AtFault(encoder_->Encode(std::exchange(waiting_, {}), structure, frame_done, coded), before));
+  FrameBits bits;
+  std::vector<std::vector<std::uint8_t>> codes;
+  SAC_RETURN_IF_ERROR(CodeLayers(group, structure, coded, bits, codes));
+  writer_.Group(group, codes, bits);
   return Status::Ok();
+}
+
+Status StreamEncoder::CodeLayers(const GroupSyntax& group, const std::vector<FrameSlot>& structure,
+                                 std::vector<FrameSyntax>& coded, FrameBits& bits,
+                                 std::vector<std::vector<std::uint8_t>>& codes) {
+  FrameCoder<RangeEncoder> coder(start_.header, start_.shape.layouts);
+  std::vector<GroupLayer> layers = {{0, structure.size(), kMotion}};
+  if (group.layered()) layers = LayersOf(structure, group.base_levels, start_.shape.layouts);
+  for (const GroupLayer& layer : layers) {
+    RangeEncoder range;
+    for (std::size_t i = layer.first; i < layer.end; ++i) {
+      FrameSyntax& frame = coded[i];
+      const bool good = !group.layered()     ? coder.Code(range, structure[i], frame, &bits)
+                        : layer.has_frames() ? coder.CodeBase(range, structure[i], frame, &bits)
+                                             : coder.CodeLater(range, i, layer.plane, frame, &bits);
+      if (!good) return AtFault(MotionTooFar(), writer_.frames() + structure[i].display, {});
+    }
+    codes.push_back(range.Finish());
+  }
+  return Status::Ok();
+}
+
+Status StreamEncoder::BeginSegment(EncodedStart start) {
+  if (finished_) return Status::InvalidArgument("the stream is finished");
+  SAC_RETURN_IF_ERROR(failure_);
+  EndOpenGroup();
+  if (!waiting_.empty()) SAC_RETURN_IF_ERROR(Latch(EncodeGroup()));
+  encoder_.reset();
+  start_ = std::move(start);
+  info_ = InfoOf(start_.header);
+  encoder_.emplace(start_.shape, start_.header, start_.max_error);
+  writer_.Start(WriteSequenceHeader(start_.header), start_.i_frame);
+  return Status::Ok();
+}
+
+void StreamEncoder::AddBounds(std::span<const Vec3f> positions) {
+  const std::size_t group = writer_.groups() - (open_frames_ > 0 ? 1 : 0);
+  const Box box = BoundingBox(positions);
+  if (group_boxes_.size() == group) {
+    group_boxes_.push_back(box);
+  } else {
+    group_boxes_.back() = Union(group_boxes_.back(), box);
+  }
+}
+
+void StreamEncoder::WriteBounds() {
+  if (group_boxes_.empty()) return;
+  Metadata metadata;
+  Box bounds = group_boxes_.front();
+  for (const Box& box : group_boxes_) bounds = Union(bounds, box);
+  metadata.bounds = bounds;
+  if (group_boxes_.size() > 1) {
+    for (const Box& box : group_boxes_) metadata.group_bounds.push_back(InBounds(box, bounds));
+  }
+  writer_.Skippable(PacketType::kMetadata, WriteMetadata(metadata));
 }
 
 Status StreamEncoder::Finish() {
@@ -114,6 +176,7 @@ Status StreamEncoder::Finish() {
   if (!ends_early) SAC_RETURN_IF_ERROR(failure_);
   EndOpenGroup();
   if (!waiting_.empty()) SAC_RETURN_IF_ERROR(Latch(EncodeGroup()));
+  WriteBounds();
   writer_.End();
   finished_ = true;
   return Status::Ok();

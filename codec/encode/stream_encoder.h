@@ -4,12 +4,10 @@
 #include <cstdint>
 #include <optional>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "codec/encode/encoded_start.h"
 #include "codec/encode/group_encoder.h"
-#include "codec/reconstruct.h"
 #include "format/frame_coder.h"
 #include "format/stream_writer.h"
 #include "sac/encoder.h"
@@ -30,6 +28,8 @@ class StreamEncoder {
   StreamEncoder& operator=(const StreamEncoder&) = delete;
 
   Status Send(std::span<const Vec3f> positions);
+  // Ends the group and goes on with frames of `start`, as the next segment.
+  Status BeginSegment(EncodedStart start);
   Status Finish();
   std::vector<std::uint8_t> TakeBytes() { return writer_.TakeBytes(); }
 
@@ -60,15 +60,23 @@ class StreamEncoder {
   }
   // Codes the waiting frames as a group.
   Status EncodeGroup();
+  // The range codes of a group's frames, one for each layer. `group` has the number of frames and the structure.
+  Status CodeLayers(const GroupSyntax& group, const std::vector<FrameSlot>& structure, std::vector<FrameSyntax>& coded,
+                    FrameBits& bits, std::vector<std::vector<std::uint8_t>>& codes);
+  // Notes that the frames of a group lie within `positions`.
+  void AddBounds(std::span<const Vec3f> positions);
+  // Writes the bounds of the clip and its groups.
+  void WriteBounds();
   // Codes a frame of an open group (low delay). Takes the positions in decoded order, model units.
   Status EncodeFrame(PositionMatrix positions);
   void EndOpenGroup();
 
-  const EncodedStart start_;
+  EncodedStart start_;
   const EncoderSettings settings_;
-  const StreamInfo info_;
-  GroupEncoder encoder_;
+  StreamInfo info_;
+  std::optional<GroupEncoder> encoder_;  // refers to start_
   StreamWriter writer_;
+  std::vector<Box> group_boxes_;         // of the input's positions, when the settings want bounds
   std::vector<PositionMatrix> waiting_;  // frames that wait for the group to be full
   bool finished_ = false;
 

@@ -22,11 +22,14 @@ struct FrameRate {
 };
 
 // A clip that is read frame by frame, as often as is wanted. Memory need not grow with the number of frames.
+//
+// A clip whose mesh changes, such as a volumetric capture of several takes, is read segment by segment; frames are
+// numbered through all of them.
 class ClipReader {
  public:
   virtual ~ClipReader() = default;
 
-  // The first frame with its triangles and attributes.
+  // The first frame of the segment with its triangles and attributes.
   virtual const Mesh& mesh() const = 0;
   virtual FrameRate rate() const { return {}; }
   // The number of frames, where it is known before they are read.
@@ -36,10 +39,18 @@ class ClipReader {
   // The beginning of messages about one frame, such as the path of the file that holds it.
   virtual std::string name_of(std::uint32_t /*frame*/) const { return name(); }
 
-  // Reads the next frame, beginning with the first, in the vertex order of mesh(), model units. After the last frame
-  // `end` becomes true and `frame` stays as it is. A message names the file and the frame at fault.
+  // Reads the next frame, beginning with the first, in the vertex order of mesh(), model units. After the last frame of
+  // the segment `end` becomes true and `frame` stays as it is. A message names the file and the frame at fault.
   virtual Status Next(Positions& frame, bool& end) = 0;
-  // Begins again with the first frame.
+  // Goes on with the first frame of the next segment, also before the end of this one. `end` becomes true, and the
+  // reader stays where it is, where there is none.
+  virtual Status NextSegment(bool& end) {
+    end = true;
+    return Status::Ok();
+  }
+  // The number of the segment's first frame.
+  virtual std::uint32_t first_frame() const { return 0; }
+  // Begins again with the first frame of the first segment.
   virtual Status Rewind() = 0;
 };
 

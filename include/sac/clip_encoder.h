@@ -27,16 +27,26 @@ struct RateTargets {
   bool any() const { return kg || sted || bpvf; }
 };
 
-// How far an encoding is. A search for settings encodes the clip several times before.
+// How far an encoding is. Settings for targets and the shape of the I-frame are found by trial encodings.
 struct EncodingProgress {
-  std::uint32_t trial = 0;   // number of the trial encoding, from 1; 0: the encoding whose bytes are given out
+  // Number of the trial encoding, from 1; 0: an encoding that is no trial. The bytes that are given out may be those of
+  // a trial, and then there is no other encoding.
+  std::uint32_t trial = 0;
   std::uint32_t frames = 0;  // that are coded in it
 };
+
+// Rounds of fitting the I-frame's shape that pay for their time on most clips (docs/decisions.md).
+inline constexpr std::uint32_t kReferenceRounds = 2;
 
 struct ClipEncoding {
   EncoderSettings encoder;  // steps, position bits, quality and, unless given, harmonics are searched with targets
   RateTargets targets;
   bool measure = true;  // false: the stream is neither decoded nor measured unless there are targets
+  // Rounds of fitting the I-frame's shape, which frames are measured from, to all frames. It is taken where the whole
+  // clip costs less with it. 0: the shape is the first frame. It is also the first frame with a bound on the error,
+  // with low_delay, where the reference is the frame before, and in clips of three frames or fewer. Where it is not
+  // given: kReferenceRounds, or 0 if `measure` is false and there are no targets.
+  std::optional<std::uint32_t> reference_rounds;
   // Is called between frames, on the caller's thread. Returns whether to go on; false ends in kCancelled.
   std::function<bool(const EncodingProgress&)> progress;
 };
@@ -44,12 +54,15 @@ struct ClipEncoding {
 // What an encoding came to.
 struct EncodedClip {
   EncoderSettings settings;  // with what a search has chosen
-  StreamInfo info;
+  StreamInfo info;           // of the last segment
   StreamBytes parts;
-  std::vector<std::uint32_t> order;  // per decoded vertex its index in the input
+  std::vector<std::uint32_t> order;  // per decoded vertex its index in the input; of the last segment
   std::uint64_t bytes = 0;           // of the whole stream
   std::uint32_t frames = 0;          // in the stream
-  std::uint32_t trials = 0;          // encodings that a search has made
+  std::uint64_t positions = 0;       // vertices of all frames
+  std::uint32_t segments = 0;        // meshes
+  std::uint32_t trials = 0;          // trial encodings: for targets, and for the I-frames' shapes
+  bool fitted_reference = false;     // an I-frame's shape is one that was fitted to the frames, not a first frame
   DistortionMetrics distortion;      // of what a decoder makes of the stream; all zero where it was not measured
   // True if the input's texture coordinates could not be coded; known where the stream was decoded.
   bool lost_texture_coordinates = false;
@@ -57,14 +70,14 @@ struct EncodedClip {
   bool lost_normals = false;
 
   // Bits a vertex and frame, all bytes counted.
-  double bpvf() const {
-    return 8 * static_cast<double>(bytes) / (static_cast<double>(info.vertices) * static_cast<double>(frames));
-  }
+  double bpvf() const { return 8 * static_cast<double>(bytes) / static_cast<double>(positions); }
 };
 
-// Encodes a clip, decodes the stream again as it comes and measures it against the clip. Without a frame rate in the
+// Encodes a clip, each of its meshes as a segment, decodes the stream again as it comes and measures it against the
+// clip. Without a frame rate in the
 // settings the clip's is taken. `sink` gets the bytes of the stream in order; an error of its own ends the encoding.
-// Memory holds the frames of a group, whatever the length of the clip.
+// Memory holds the frames of a group, whatever the length of the clip, and streams of up to 64 MB until it is known
+// which one is given out.
 //
 // kInvalidArgument for settings, a mesh or frames that cannot be coded, and, saying what was reached, for targets that
 // cannot be met; kLimit where decoders would refuse the stream; kCancelled; the errors of `clip` and `sink`. When a

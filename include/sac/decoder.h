@@ -11,6 +11,7 @@
 
 #include "sac/limits.h"
 #include "sac/mesh.h"
+#include "sac/metadata.h"
 #include "sac/status.h"
 #include "sac/stream_info.h"
 
@@ -30,6 +31,12 @@ struct DecoderSettings {
   // How many frames of a group are reconstructed at the same time, as far as the memory limit allows. 1: all work is
   // done by the caller's thread.
   unsigned threads = 1;
+  // How many layers of each group are decoded, at least one; what the others add is left out (spec.md 6.1). A stream
+  // of groups without layers has one.
+  std::uint32_t layers = 0xffffffff;
+  // Gets the type and the payload of each packet that a decoder may pass over, within Send() or Receive(). It throws
+  // nothing.
+  std::function<void(std::uint32_t type, std::span<const std::uint8_t> payload)> skippable;
   // The job system that reconstructs them, called with at most `threads` jobs from within Receive(). Empty: threads
   // that live as long as the call, or the caller's where the platform has none. A call fails with kInvalidArgument when
   // a runner throws or leaves a job out, with kLimit when it throws std::bad_alloc.
@@ -37,10 +44,11 @@ struct DecoderSettings {
 };
 
 struct FrameInfo {
-  std::uint32_t index = 0;  // in the clip, from 0
-  bool intra = false;       // needed no other frame
-  double time = 0;          // seconds from the clip's begin; 0 when the stream has no frame rate
-  Box box;                  // of the positions, model units
+  std::uint32_t index = 0;    // in the clip, from 0
+  bool intra = false;         // needed no other frame
+  std::uint32_t segment = 0;  // whose mesh it moves, from 0
+  double time = 0;            // seconds from the clip's begin; 0 when the stream has no frame rate
+  Box box;                    // of the positions, model units
 };
 
 struct DecodedFrame : FrameInfo {
@@ -67,6 +75,16 @@ struct VertexBuffer {
 struct FrameBuffers {
   VertexBuffer positions;  // without StreamInfo::offset
   VertexBuffer normals;    // of the vertices, area-weighted means of their triangles', of length 1
+};
+
+// How a mesh follows its handles (spec.md 6.4.5): vertex v is at the sum, over the entries i from first[v] to before
+// first[v + 1], of weights[i] * (matrix of handles[i] * (x, y, z, 1)), where x, y, z are the mesh's positions. What a
+// skin is to joints, so that a GPU can do it.
+struct BlendWeights {
+  std::uint32_t handle_count = 0;
+  std::vector<std::uint32_t> first;    // of each vertex, and one more
+  std::vector<std::uint32_t> handles;  // of each entry, the nearest handle of a vertex first
+  std::vector<float> weights;          // of each entry; those of a vertex are positive and add up to 1
 };
 
 // A run of frames.
@@ -113,6 +131,17 @@ class Decoder {
   // is ready; kInvalidArgument, and the frame still waits, when a buffer is too small.
   Status Receive(const FrameBuffers& buffers, FrameInfo& info);
 
+  // The weights of the mesh that is there now, which Prepare() computes if need be. kUnsupported when frames are
+  // measured against the frame before. Otherwise as Prepare().
+  Status Blend(BlendWeights& weights);
+  // Decodes the next frame as matrices of the handles, three rows of four columns each, instead of positions. Then
+  // `exact` says whether the frame is no more than the blend; otherwise its detail and correction planes, which only
+  // Receive() adds, are left out. The box in `info` holds the blended mesh, but may be larger. kInvalidArgument, and
+  // the frame still waits, when `matrices` has another size than 12 floats a handle. Otherwise as Receive().
+  Status ReceiveHandles(std::span<float> matrices, FrameInfo& info, bool& exact);
+  // The same at a time between frames: see Interpolate().
+  Status InterpolateHandles(double time, std::span<float> matrices, FrameInfo& info, bool& exact);
+
   // Declares the end of the bytes: kCorrupt when the stream is not complete. With skip_damage, more frames may be ready
   // to be received afterwards: those of a packet whose size was damaged, or of a group that is cut off: the latter
   // without a check, which is cut off, too. Called again after the last of them, it tells whether the stream was
@@ -144,13 +173,28 @@ class Decoder {
   Status Interpolate(double time, DecodedFrame& frame);
   Status Interpolate(double time, const FrameBuffers& buffers, FrameInfo& info);
 
+  // Computes what frames need beside the mesh, once mesh() is there: the next call that needs it does so otherwise. It
+  // may take a second for a large mesh, and may be called on another thread than the calls before and after it.
+  // kNeedMoreData before the mesh has been sent.
+  Status Prepare();
+  // Makes the frames of a group ready whose layers are still coming, without those that have not come: what has come
+  // is shown in time, coarser.
+  Status Flush();
+
   // Forgets everything but the settings: another stream may begin. Needs no memory.
   void Reset() noexcept;
 
-  // What the stream says of itself, and the first frame's mesh with its static attributes; null before they have been
-  // decoded. Its normals are those of the first frame: FrameNormals gives those of others.
+  // What the stream says of itself, and the clip's mesh with its static attributes; null before they have been decoded.
+  // Its positions are the shape that frames are measured from, which is near the first frame and need not be one. Its
+  // normals are those of the first frame: FrameNormals gives those of others.
+  // The mesh of a stream of several segments is that of the frames that Receive() gives next: another one, with other
+  // triangles and attributes, from some call of Send() on. segment() is then another number.
   const StreamInfo* info() const;
   const Mesh* mesh() const;
+  // The number of the segment that mesh() is of, from 0; nothing before it is known.
+  std::optional<std::uint32_t> segment() const;
+  // What the stream says of its clip so far; null before it says anything. All of it may come at the end.
+  const Metadata* metadata() const;
   // Per vertex its index in the input; empty when the stream does not keep the order.
   const std::vector<std::uint32_t>& order() const;
   // How many frames the clip has; nothing before the end or AddIndex() has told.

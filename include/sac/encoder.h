@@ -11,16 +11,23 @@
 
 #include "sac/limits.h"
 #include "sac/mesh.h"
+#include "sac/metadata.h"
 #include "sac/status.h"
 #include "sac/stream_info.h"
 
 namespace sac {
 
+// A packet that decoders may pass over (spec.md 3).
+struct ExtraPacket {
+  std::uint32_t type = 9;  // 8 to 15
+  std::vector<std::uint8_t> payload;
+};
+
 // Everything an encoder chooses. Steps, bits and harmonics that are left out come from `quality`.
 struct EncoderSettings {
   double quality = 50;                     // 0 (smallest) to 100 (nearest to the input)
   std::optional<std::uint32_t> harmonics;  // over all components; at least one each, at most the vertices
-  std::uint32_t samples_per_harmonic = 2;  // of the reduced basis (docs/decisions.md); 0: exact harmonics
+  std::uint32_t handles_per_harmonic = 2;  // fewer where they would be many; 0: every vertex is a handle
   std::uint32_t group = 128;               // frames between points of random access
   std::uint32_t pyramid = 16;              // frames of a hierarchy of B-frames; 1: P-frames only
   double level_growth = 1.2;               // of the planes' steps from level to level of a pyramid, 1..2
@@ -28,11 +35,11 @@ struct EncoderSettings {
   bool low_delay = false;
   ReferenceShape reference_shape = ReferenceShape::kKey;  // `previous` has P-frames only
   std::optional<double> motion_step;                      // radians and strain
-  std::optional<double> displacement_step;                // fraction of the first frame's RMS radius
-  std::optional<double> detail_step;       // fraction of the first frame's RMS radius; 0: no detail plane
-  std::optional<double> max_error;         // of any vertex in any frame, model units
-  std::optional<double> position_bits;     // of the I-frame: log2 of its extent in steps, 1..24
-  std::uint32_t frame_rate_numerator = 0;  // frames per second; 0: unknown
+  std::optional<double> displacement_step;                // fraction of the mesh's RMS radius
+  std::optional<double> detail_step;                      // fraction of the mesh's RMS radius; 0: no detail plane
+  std::optional<double> max_error;                        // of any vertex in any frame, model units
+  std::optional<double> position_bits;                    // of the I-frame: log2 of its extent in steps, 1..24
+  std::uint32_t frame_rate_numerator = 0;                 // frames per second; 0: unknown
   std::uint32_t frame_rate_denominator = 1;
   // What was taken from the author's coordinates to have positions near the origin, where floats are exact, model
   // units. It is only carried: decoders give it out beside the positions (StreamInfo::offset). Finite.
@@ -41,6 +48,14 @@ struct EncoderSettings {
   bool index = true;        // end streams of several groups with where they begin
   // Header and I-frame come again before every so many groups, for those who join in the middle; 0: never.
   std::uint32_t repeat_start = 0;
+  // Groups are coded in layers that can be dropped from the end, a coarser stream each time: in the group's own packet
+  // this many levels of the pyramid, then the other levels one by one, then detail and correction (spec.md 6.1). 0: no
+  // layers. Not with low_delay or the reference shape `previous`, which have none.
+  std::uint32_t base_levels = 0;
+  Metadata metadata;    // what the stream says of the clip; its bounds are left alone
+  bool bounds = false;  // puts the bounds of the clip and of its groups at the end of the stream
+  // Packets that decoders pass over, after the first mesh.
+  std::vector<ExtraPacket> extra_packets;
   // Is called on the caller's thread between the steps of Create(), with 0, and with the number of frames coded after
   // each frame. Returns whether to go on; after false the encoder answers kCancelled and cannot go on.
   std::function<bool(std::uint32_t frames)> progress;
@@ -69,19 +84,26 @@ struct FrameFault {
 //   write(encoder->TakeBytes());
 class Encoder {
  public:
-  // Codes the I-frame, computes the harmonics. kInvalidArgument for settings out of range, a mesh without vertices, a
+  // Codes the I-frame, computes the harmonics. The positions of `mesh` are the shape that all frames are measured from:
+  // those of the first frame, or any near them, such as EncodeClip() finds. Normals should be the first frame's.
+  // kInvalidArgument for settings out of range, a mesh without vertices, a
   // triangle of a missing vertex, attributes that do not fit the mesh or coordinates that are not finite.
-  static Status Create(const Mesh& first_frame, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder);
+  static Status Create(const Mesh& mesh, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder);
   ~Encoder();
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;
 
-  // The next frame, in the vertex order of `first_frame`, model units. kInvalidArgument when the number of vertices
+  // The next frame, in the vertex order of the mesh, model units. kInvalidArgument when the number of vertices
   // differs or a coordinate is not finite; the encoder can go on with another frame then. kInvalidArgument, too, when
   // the motion cannot be coded or the bound cannot be held, here or in a frame before: no more frames can be sent, but
   // Finish() still ends the stream after the last group, or with low_delay the last frame, that was coded. The message
   // says which frame and vertex it is.
   Status Send(std::span<const Vec3f> positions);
+  // Goes on with frames of another mesh, such as one of other triangles: a new segment of the stream, in which the
+  // frames that are sent next are coded as in a stream of their own. Decoders tell that the mesh has changed. Status as
+  // of Create(), and as of Send() for the frames before; after a failure of Create()'s kind the encoder goes on with
+  // the mesh before.
+  Status BeginSegment(const Mesh& mesh);
   // Ends the stream. It fails with Send()'s failure when nothing was coded before.
   Status Finish();
 
@@ -93,7 +115,7 @@ class Encoder {
   // What has been coded since the last call.
   std::vector<std::uint8_t> TakeBytes();
 
-  // The index in the input of each decoded vertex.
+  // The index in the input of each decoded vertex of the last segment.
   const std::vector<std::uint32_t>& order() const;
   const StreamInfo& info() const;
   const StreamBytes& stream_bytes() const;

@@ -12,7 +12,7 @@ struct ExpertLimits {
   std::uint32_t triangles = 8'000'000;
   std::uint32_t harmonics = 8'192;         // of one component
   std::uint32_t frames_per_group = 4'096;  // frames
-  std::uint32_t packet_bytes = 1u << 28;   // bytes of a packet's payload
+  std::uint32_t packet_bytes = 1u << 27;   // bytes of a packet's payload
   std::uint64_t group_values = 1u << 27;   // coefficients of all planes of a group together
   std::uint64_t basis_values = 1u << 28;   // doubles of all harmonics together: components' vertices x harmonics
   std::uint64_t factor_values = 1u << 28;  // values of the factorized Laplacian, of 12 bytes each

@@ -22,7 +22,7 @@ struct Box {
   double diagonal() const { return std::sqrt(size()[0] * size()[0] + size()[1] * size()[1] + size()[2] * size()[2]); }
 };
 
-// An indexed triangle mesh with the static attributes of a clip's first frame. Any list of triangles is a mesh: several
+// An indexed triangle mesh with the static attributes of a clip. Any list of triangles is a mesh: several
 // components, boundaries, non-manifold edges, isolated vertices and degenerate or duplicate triangles are all allowed.
 struct Mesh {
   Positions positions;

@@ -75,6 +75,8 @@ typedef struct sac_settings {
   double max_free_work; /* of the first frame, beside max_work_per_byte for each byte of its packet */
   double max_work_per_byte;
   double max_frame_work;
+
+  uint32_t layers; /* of each group that are decoded, at least one; a stream may have none but that (spec.md 6.1) */
 } sac_settings;
 
 typedef enum sac_format {
@@ -122,7 +124,7 @@ typedef struct sac_mesh {
 
 typedef struct sac_decoder sac_decoder;
 
-/* The version of the library, such as "0.1.0", and of the streams that it decodes, such as "0.8". */
+/* The version of the library, such as "0.1.0", and of the streams that it decodes, such as "0.9". */
 SAC_API const char* sac_version(void);
 SAC_API const char* sac_stream_version(void);
 
@@ -138,8 +140,8 @@ SAC_API void sac_decoder_close(sac_decoder* decoder);
 SAC_API void sac_decoder_reset(sac_decoder* decoder);
 
 /* Takes bytes from *data, at most until a packet is complete, and moves *data and *size on. Takes nothing while frames
- * wait to be received. With the last byte of the first frame's packet it computes all that follows from that frame,
- * which may take a second for a large mesh: not on a thread that must not wait. */
+ * wait to be received. With the last byte of a segment's first group it computes all that follows from the mesh, unless
+ * sac_decoder_prepare() has done so, which may take a second for a large mesh: not on a thread that must not wait. */
 SAC_API sac_status sac_decoder_send(sac_decoder* decoder, const uint8_t** data, size_t* size);
 /* The next frame into the caller's memory. SAC_NEED_MORE_DATA when none is ready; SAC_INVALID_ARGUMENT, and the frame
  * still waits, when a buffer is too small. Either pointer may be null. */
@@ -148,8 +150,37 @@ SAC_API sac_status sac_decoder_receive(sac_decoder* decoder, const sac_frame_buf
  * received afterwards; called again after the last of them, it tells whether the stream was complete. */
 SAC_API sac_status sac_decoder_finish(sac_decoder* decoder);
 
-/* The triangles and attributes; SAC_NEED_MORE_DATA before they have been sent. */
+/* The triangles and attributes; SAC_NEED_MORE_DATA before they have been sent. In a stream of several segments these
+ * are of the frames that sac_decoder_receive() gives next: after a call of sac_decoder_send() that changes
+ * sac_decoder_segment() they are others, and the pointers given out before are no longer valid. */
 SAC_API sac_status sac_decoder_mesh(sac_decoder* decoder, sac_mesh* mesh);
+/* The number of the segment whose mesh this is, from 0; SAC_NEED_MORE_DATA before it is known. */
+SAC_API sac_status sac_decoder_segment(sac_decoder* decoder, uint32_t* segment);
+/* The positions of sac_decoder_mesh(), 3 floats a vertex: a still to be shown before the first frame is there. It is
+ * the shape that frames are measured from, which is near the first frame. */
+SAC_API sac_status sac_decoder_still(sac_decoder* decoder, const float** positions);
+/* Computes what frames need beside the mesh, once that is there; the next call that needs it does so otherwise. It may
+ * take a second for a large mesh, and may be made on another thread than the calls before and after it. */
+SAC_API sac_status sac_decoder_prepare(sac_decoder* decoder);
+/* Makes the frames of a group ready whose layers are still coming, without those that have not come: what has come is
+ * shown in time, coarser. */
+SAC_API sac_status sac_decoder_flush(sac_decoder* decoder);
+
+/* What a stream says of its clip. Texts are UTF-8 and null where the stream has none. */
+typedef struct sac_metadata {
+  const char* name;
+  const char* json;       /* the author's own */
+  double metres_per_unit; /* 0: unknown */
+  int32_t up_axis;        /* 0, 1, 2: x, y, z; -1: unknown */
+  int32_t first_frame;    /* the author's number of frame 0; 0 where it is unknown */
+  int32_t loops;          /* 1: made to be played in a loop; 0: not; -1: unknown */
+  uint32_t has_bounds;    /* 1: the box of all frames as they were encoded is known */
+  double box_low[3];
+  double box_high[3];
+} sac_metadata;
+
+/* What the stream has said so far; all of it may come at its end. SAC_NEED_MORE_DATA before anything. */
+SAC_API sac_status sac_decoder_metadata(sac_decoder* decoder, sac_metadata* metadata);
 
 /* The first frame's normals where corners of a vertex have normals of their own (hard edges): 3 floats for each of
  * *count normals, and 3 a triangle in *triangle_normals, the indices of its corners' normals. Both are null, and *count
@@ -177,6 +208,32 @@ SAC_API sac_status sac_decoder_add_index(sac_decoder* decoder, const uint8_t* ta
  * later time; SAC_UNSUPPORTED when the stream's frames are measured against the frame before. */
 SAC_API sac_status sac_decoder_interpolate(sac_decoder* decoder, double frame_time, const sac_frame_buffers* buffers,
                                            sac_frame_info* info);
+
+/* How the mesh follows its handles, what a skin is to joints (spec.md 6.4.5), so that a GPU can move it: vertex v is at
+ * the sum, over the entries i from first[v] to before first[v + 1], of weights[i] * (matrix of handles[i] * (x, y, z,
+ * 1)), x, y, z its place in sac_decoder_still(). Weights are positive; those of a vertex add up to 1, its nearest
+ * handle comes first. */
+typedef struct sac_blend {
+  uint32_t handle_count;
+  uint32_t entries;
+  const uint32_t* first; /* of each vertex, and one more */
+  const uint32_t* handles;
+  const float* weights;
+} sac_blend;
+
+/* The blend of the mesh that is there now; does what sac_decoder_prepare() does if need be. The pointers are valid
+ * until the next call, or sac_decoder_segment() changes. SAC_UNSUPPORTED when the stream's frames are measured against
+ * the frame before; SAC_NEED_MORE_DATA before the mesh has been sent. */
+SAC_API sac_status sac_decoder_blend(sac_decoder* decoder, sac_blend* blend);
+/* The next frame as matrices of the handles instead of positions: 12 floats each, three rows of four columns; `count`
+ * is how many floats there is room for, 12 a handle. *exact is 1 when the frame is no more than the blend; if it is 0,
+ * its detail and correction planes, which only sac_decoder_receive() adds, are left out. The box holds the blended
+ * mesh, but may be larger. Otherwise as sac_decoder_receive(). `info` and `exact` may be null. */
+SAC_API sac_status sac_decoder_receive_handles(sac_decoder* decoder, float* matrices, size_t count,
+                                               sac_frame_info* info, uint32_t* exact);
+/* The same at a time between frames, as sac_decoder_interpolate(). */
+SAC_API sac_status sac_decoder_interpolate_handles(sac_decoder* decoder, double frame_time, float* matrices,
+                                                   size_t count, sac_frame_info* info, uint32_t* exact);
 
 /* How many frames the clip has. SAC_NEED_MORE_DATA before the end or sac_decoder_add_index() has told. */
 SAC_API sac_status sac_decoder_frames(sac_decoder* decoder, uint32_t* frames);

@@ -32,8 +32,9 @@
 extern "C" {
 #endif
 
-/* Called on the caller's thread between frames. `trial` is the number of the trial encoding of a search, from 1, and 0
- * in the encoding whose bytes are given out; `frames` of it are coded. Anything but 0 ends in SAC_CANCELLED. */
+/* Called on the caller's thread between frames. `trial` is the number of a trial encoding, from 1, and 0 in an encoding
+ * that is none; `frames` of it are coded. The bytes that sac_encode_clip() gives out may be those of a trial. Anything
+ * but 0 ends in SAC_CANCELLED. */
 typedef int (*sac_progress)(void* user, uint32_t trial, uint32_t frames);
 
 /* Set it with sac_encoder_settings_init(), then change what is to be different. Doubles that are NaN, and harmonics 0,
@@ -46,29 +47,49 @@ typedef struct sac_encoder_settings {
   double target_sted;       /* NaN: none */
   double target_bpvf;       /* bits a vertex and frame; NaN: none */
   double motion_step;       /* radians and strain */
-  double displacement_step; /* fraction of the first frame's RMS radius */
-  double detail_step;       /* fraction of the first frame's RMS radius; 0: no detail plane */
-  double position_bits;     /* of the first frame: log2 of its extent in steps, 1 to 24 */
+  double displacement_step; /* fraction of the mesh's RMS radius */
+  double detail_step;       /* fraction of the mesh's RMS radius; 0: no detail plane */
+  double position_bits;     /* of the mesh: log2 of its extent in steps, 1 to 24 */
   double level_growth;      /* of the steps from level to level of a pyramid, 1 to 2 */
   uint32_t harmonics;       /* over all components */
-  uint32_t samples_per_harmonic;   /* of the reduced basis, at most 64; 0: exact harmonics */
+  uint32_t handles_per_harmonic;   /* at most 64, fewer where they would be many; 0: every vertex is a handle */
   uint32_t group;                  /* frames between points of random access */
   uint32_t pyramid;                /* frames of a hierarchy of B-frames; 1: P-frames only */
   uint32_t low_delay;              /* 1: P-frames only, each coded as it is sent */
-  uint32_t reference_previous;     /* 1: motion is measured against the frame before instead of the first */
+  uint32_t reference_previous;     /* 1: motion is measured against the frame before instead of the mesh */
   uint32_t frame_rate_numerator;   /* frames per second; 0: unknown */
   uint32_t frame_rate_denominator; /* not 0 */
   uint32_t keep_order;             /* 1: the order of the vertices is in the stream */
   uint32_t index;                  /* 1: streams of several groups end with an index */
-  uint32_t repeat_start;           /* header and first frame come again before every that many groups; 0: never */
+  uint32_t repeat_start;           /* header and mesh come again before every that many groups; 0: never */
   uint32_t unmeasured;             /* 1: sac_encode_clip() neither decodes nor measures, unless there are targets */
   uint64_t max_memory;             /* bytes that the decoders it is for may hold (spec.md 9) */
   sac_progress progress;           /* null: none */
   void* user;                      /* given to `progress` */
   double offset[3]; /* taken from the author's coordinates before; carried to the decoders: sac_decoder_offset() */
+  /* For sac_encode_clip() alone. Rounds of fitting the shape that motion is measured against to all frames; it is used
+   * where the clip costs less with it. Encoding takes 2 to 3 times as long, with targets as many trials more as there
+   * are rounds. 0: the shape is the first frame. It is also the first frame with max_error, low_delay or
+   * reference_previous, and in clips of three frames or fewer. Negative: 2, or 0 where nothing is measured. */
+  int32_t reference_rounds;
+  /* Groups are coded in layers that can be dropped from the end, a coarser stream each time: in a group's own packet
+   * this many levels of the pyramid, then the others one by one, then detail and correction. 0: no layers. Not with
+   * low_delay or reference_previous. */
+  uint32_t base_levels;
+  /* What the stream says of the clip, as in sac_metadata; texts may be null, and are read in the call alone. */
+  const char* name;
+  const char* json;
+  double metres_per_unit;   /* 0: not said */
+  int32_t up_axis;          /* 0, 1, 2: x, y, z; -1: not said */
+  int32_t loops;            /* 1, 0; -1: not said */
+  int32_t first_frame;      /* the author's number of frame 0 */
+  uint32_t has_first_frame; /* 1: it is said */
+  uint32_t bounds;          /* 1: puts the box of all frames, and of each group, at the end of the stream */
 } sac_encoder_settings;
 
-/* A first frame; set all of it to 0 before. Pointers that may be null are null where the mesh has no such attribute. */
+/* The mesh of a clip; set all of it to 0 before. Its positions are the first frame's, or any near them for
+ * sac_encoder_open(); its normals are the first frame's. Pointers that may be null are null where the mesh has no such
+ * attribute. */
 typedef struct sac_input_mesh {
   uint32_t vertices;
   uint32_t triangles;
@@ -89,7 +110,7 @@ typedef struct sac_input_mesh {
 /* The bytes of a stream by what they say; they add up to its size. */
 typedef struct sac_stream_bytes {
   double header;  /* magic, sequence header, end and index */
-  double i_frame; /* connectivity, positions and attributes of the first frame */
+  double i_frame; /* connectivity, positions and attributes of the mesh */
   double motion;
   double displacement;
   double detail;
@@ -102,7 +123,7 @@ typedef struct sac_encoder sac_encoder;
 /* Does nothing to a null pointer. */
 SAC_API void sac_encoder_settings_init(sac_encoder_settings* settings);
 
-/* Codes the first frame and computes the harmonics, which may take seconds for a large mesh. Null `settings` are those
+/* Codes the mesh and computes the harmonics, which may take seconds for a large mesh. Null `settings` are those
  * of sac_encoder_settings_init(). After an error *encoder is there only to give its message and be closed; it is null
  * when memory is too short even for that. SAC_INVALID_ARGUMENT for settings out of range and a mesh that cannot be
  * coded; SAC_UNSUPPORTED for settings of a later library; SAC_LIMIT where decoders would refuse the stream or memory is
@@ -116,6 +137,9 @@ SAC_API void sac_encoder_close(sac_encoder* encoder);
  * vertex, 0 for 12. SAC_INVALID_ARGUMENT for a coordinate that is not finite, and the encoder goes on with another
  * frame; after other errors it cannot go on. */
 SAC_API sac_status sac_encoder_send(sac_encoder* encoder, const float* positions, size_t stride);
+/* Goes on with frames of another mesh: a new segment of the stream. sac_encoder_order() is then that of this mesh.
+ * After an error in the mesh the encoder goes on with the mesh before. */
+SAC_API sac_status sac_encoder_begin_segment(sac_encoder* encoder, const sac_input_mesh* mesh);
 /* Ends the stream. */
 SAC_API sac_status sac_encoder_finish(sac_encoder* encoder);
 /* The bytes that have been coded since the last call, *size of them, which may be 0. */
@@ -144,7 +168,7 @@ typedef int (*sac_byte_sink)(void* user, const uint8_t* data, size_t size);
 typedef struct sac_clip_result {
   uint64_t bytes;
   uint32_t frames;
-  uint32_t trials; /* encodings that a search has made */
+  uint32_t trials; /* trial encodings: for targets, and for the shape of the mesh */
   double bpvf;     /* bits a vertex and frame */
   double kg;       /* percent */
   double sted;
@@ -154,10 +178,26 @@ typedef struct sac_clip_result {
 } sac_clip_result;
 
 /* Encodes a whole clip, searching settings where there are targets, and measures what a decoder makes of the stream.
+ * `sink` may get all bytes at the end.
  * SAC_INVALID_ARGUMENT also where `source` or `sink` ended the encoding, and for targets that cannot be met. */
 SAC_API sac_status sac_encode_clip(const sac_input_mesh* mesh, const sac_frame_source* source,
                                    const sac_encoder_settings* settings, sac_byte_sink sink, void* sink_user,
                                    sac_clip_result* result);
+
+/* What else there is to say of a clip that was encoded. Set `order` before, the rest is set by the call. */
+typedef struct sac_clip_details {
+  uint32_t* order; /* null, or memory for one number a vertex: per decoded vertex its index in the mesh */
+  uint32_t lost_texture_coordinates; /* 1: those of the mesh could not be coded; known where it was measured */
+  uint32_t lost_normals;             /* the same of normals */
+  double sted_spatial;               /* the parts of the result's STED */
+  double sted_temporal;
+  double seam_gap; /* largest distance between decoded vertices that coincide in every frame, model units */
+} sac_clip_details;
+
+/* sac_encode_clip() with details, which may be null. */
+SAC_API sac_status sac_encode_clip_details(const sac_input_mesh* mesh, const sac_frame_source* source,
+                                           const sac_encoder_settings* settings, sac_byte_sink sink, void* sink_user,
+                                           sac_clip_result* result, sac_clip_details* details);
 
 #ifdef __cplusplus
 }

@@ -20,7 +20,7 @@ struct StreamInfo {
   std::uint32_t frame_rate_numerator = 0;  // frames per second are numerator / denominator; 0: unknown
   std::uint32_t frame_rate_denominator = 1;
   ReferenceShape reference_shape = ReferenceShape::kKey;
-  double position_step = 0;      // between neighbouring positions of the first frame, model units
+  double position_step = 0;      // between neighbouring positions of the I-frame, model units
   double motion_step = 0;        // radians (rotation), strain (stretch)
   double rotation_step = 0;      // of a frame's rigid motion, radians
   double displacement_step = 0;  // model units
@@ -39,7 +39,7 @@ struct StreamInfo {
 // The bytes of a stream by what they say. They add up to its size.
 struct StreamBytes {
   double header = 0;        // magic, sequence header, end and index
-  double i_frame = 0;       // connectivity, positions and attributes of the first frame
+  double i_frame = 0;       // connectivity, positions and attributes of the mesh
   double motion = 0;        // rotation and stretch of the surface
   double displacement = 0;  // smooth correction of where it is
   double detail = 0;        // correction within patches

@@ -13,7 +13,7 @@
 
 /* The version of the streams that the encoder writes and the decoder reads (spec.md 4). */
 #define SAC_STREAM_VERSION_MAJOR 0
-#define SAC_STREAM_VERSION_MINOR 8
+#define SAC_STREAM_VERSION_MINOR 9
 
 #define SAC_QUOTED_(x) #x
 #define SAC_QUOTED(x) SAC_QUOTED_(x)

@@ -102,7 +102,7 @@ TEST(CEncoder, PassesEachSettingOn) {
       {[](auto& s) { s.position_bits = 9; }, [](auto& s) { s.position_bits = 9; }},
       {[](auto& s) { s.level_growth = 1.5; }, [](auto& s) { s.level_growth = 1.5; }},
       {[](auto& s) { s.harmonics = 9; }, [](auto& s) { s.harmonics = 9; }},
-      {[](auto& s) { s.samples_per_harmonic = 0; }, [](auto& s) { s.samples_per_harmonic = 0; }},
+      {[](auto& s) { s.handles_per_harmonic = 0; }, [](auto& s) { s.handles_per_harmonic = 0; }},
       {[](auto& s) { s.group = 4; }, [](auto& s) { s.group = 4; }},
       {[](auto& s) { s.pyramid = 1; }, [](auto& s) { s.pyramid = 1; }},
       {[](auto& s) { s.low_delay = 1; }, [](auto& s) { s.low_delay = true; }},
@@ -313,7 +313,9 @@ int Append(void* user, const std::uint8_t* data, std::size_t size) {
 TEST(EncodeClipInC, EncodesAndMeasures) {
   const Clip clip = BendingClip(kFrames);
   const sac_input_mesh mesh = InputOf(clip.mesh);
-  const sac_encoder_settings settings = Settings();
+  sac_encoder_settings settings = Settings();
+  EXPECT_EQ(settings.reference_rounds, -1);
+  settings.reference_rounds = 0;
   Source source{clip};
   const sac_frame_source functions = source.Functions();
   std::vector<std::uint8_t> bytes;
@@ -327,6 +329,23 @@ TEST(EncodeClipInC, EncodesAndMeasures) {
   EXPECT_GT(result.sted, 0);
   EXPECT_GT(result.max_error, 0);
   EXPECT_EQ(result.bpvf, 8.0 * static_cast<double>(bytes.size()) / (mesh.vertices * kFrames));
+
+  settings.reference_rounds = 1;
+  bytes.clear();
+  std::vector<std::uint32_t> order(mesh.vertices);
+  sac_clip_details details = {};
+  details.order = order.data();
+  ASSERT_EQ(sac_encode_clip_details(&mesh, &functions, &settings, Append, &bytes, &result, &details), SAC_OK);
+  EXPECT_EQ(result.trials, 2u);
+  EXPECT_EQ(result.bytes, bytes.size());
+  EXPECT_GT(details.sted_temporal, 0);
+  EXPECT_EQ(details.lost_texture_coordinates + details.lost_normals, 0u);
+  const auto decoded = Decode(bytes).frames;
+  ASSERT_EQ(decoded.size(), kFrames);
+  for (std::size_t v = 0; v < order.size(); ++v) {
+    const Vec3f &a = clip.frames[3][order[v]], &b = decoded[3].positions[v];
+    EXPECT_LE(std::hypot(a[0] - b[0], a[1] - b[1], a[2] - b[2]), 1.0001 * result.max_error);
+  }
 }
 
 TEST(EncodeClipInC, SearchesTargetsAndCanBeCancelledInBetween) {
@@ -341,7 +360,8 @@ TEST(EncodeClipInC, SearchesTargetsAndCanBeCancelledInBetween) {
   ASSERT_EQ(sac_encode_clip(&mesh, &functions, &settings, Append, &bytes, &result), SAC_OK) << result.message;
   EXPECT_LE(result.kg, 2);
   EXPECT_GT(result.trials, 0u);
-  EXPECT_EQ(source.rewinds, static_cast<int>(result.trials) + 1);
+  // Before the first look at the mesh, before each trial and before the encoding.
+  EXPECT_EQ(source.rewinds, static_cast<int>(result.trials) + 2);
 
   settings.progress = [](void*, std::uint32_t trial, std::uint32_t) { return trial == 2 ? 1 : 0; };
   bytes.clear();

@@ -17,7 +17,7 @@ constexpr double kStep = 1e-3;  // of displacements, as a fraction of the RMS ra
 EncoderSettings Complete(const Clip& clip, double step = kStep) {
   EncoderSettings s;
   s.harmonics = static_cast<std::uint32_t>(4 * clip.mesh.positions.size());
-  s.samples_per_harmonic = 0;
+  s.handles_per_harmonic = 0;
   s.level_growth = 1;
   s.displacement_step = step;
   s.motion_step = 30 * step;

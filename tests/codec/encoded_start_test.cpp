@@ -13,6 +13,7 @@
 #include <string>
 
 #include "codec/encode/stream_encoder.h"
+#include "codec/i_frame.h"
 #include "format/crc32.h"
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
@@ -73,7 +74,7 @@ TEST(EncodedStart, GroupsFromAStartThatIsReadAgainAreTheSameBytes) {
       {"previous", [](auto& s) { s.reference_shape = ReferenceShape::kPrevious; }},
       {"low delay", [](auto& s) { s.low_delay = true; }},
       {"kept order", [](auto& s) { s.keep_order = true; }},
-      {"exact harmonics", [](auto& s) { s.samples_per_harmonic = 0; }},
+      {"exact harmonics", [](auto& s) { s.handles_per_harmonic = 0; }},
   };
   for (const Clip& clip : {TurningPartsClip(9), BendingClip(9)}) {
     for (const auto& [kind, apply] : kinds) {
@@ -158,7 +159,7 @@ TEST(EncodedStart, OrdersAndBoundsThatDoNotFitAreRefused) {
 TEST(EncodedStart, OtherHarmonicsAreRefused) {
   EncodedStart start = Start(BendingClip(1), Small());
   IFrameSyntax syntax;
-  ASSERT_TRUE(ParseIFrame(start.i_frame, start.header, syntax).ok());
+  ASSERT_TRUE(ReadIFrame(start.i_frame, start.header, syntax).ok());
   syntax.fingerprint[0] += 1;
   start.i_frame = WriteIFrame(syntax, start.header);
   EXPECT_EQ(Read(WriteStreamStart(start)).code(), StatusCode::kUnsupported);

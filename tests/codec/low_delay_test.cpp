@@ -85,7 +85,7 @@ TEST(LowDelay, ShowsWhatPFramesShow) {
 
 TEST(LowDelay, FramingIsThreeBytesAtMost) {
   RecordWriter writer;
-  EXPECT_EQ(writer.Open(300), WritePacket(PacketType::kGroup, Bytes{0, 0xAC, 0x02}));
+  EXPECT_EQ(writer.Open(300), WritePacket(PacketType::kGroup, Bytes{0, 0xAC, 0x02, 4}));
   for (const std::size_t size : {0u, 1u, 126u}) EXPECT_EQ(writer.Frame(Bytes(size)).size(), size + 2) << size;
   for (const std::size_t size : {127u, 16382u}) EXPECT_EQ(writer.Frame(Bytes(size)).size(), size + 3) << size;
   EXPECT_EQ(writer.End().size(), 5u);
@@ -187,7 +187,7 @@ TEST(LowDelay, LimitsAreRespected) {
 TEST(LowDelay, AnEmptyGroupIsNothing) {
   std::vector<Packet> packets = Packets(Encode(BendingClip(2), LowDelay()).bytes);
   packets.insert(packets.begin() + 2, {PacketType::kGroupEnd, {}});
-  packets.insert(packets.begin() + 2, {PacketType::kGroup, {0, 0}});
+  packets.insert(packets.begin() + 2, {PacketType::kGroup, {0, 0, 4}});
   const Decoded decoded = Decode(Join(packets));
   EXPECT_TRUE(decoded.status.ok()) << decoded.status.message();
   EXPECT_EQ(decoded.frames.size(), 2u);

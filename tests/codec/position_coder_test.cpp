@@ -7,6 +7,8 @@
 #include <random>
 
 #include "codec/encode/position_search.h"
+#include "format/range_coder.h"
+#include "format/recorded_bins.h"
 
 namespace sac {
 namespace {
@@ -26,10 +28,27 @@ std::vector<Triangle> SheetTriangles(std::uint32_t side) {
   return triangles;
 }
 
-std::vector<GridPosition> Decoded(const std::vector<std::uint8_t>& bytes, const PositionGraph& graph,
-                                  const PositionSteps& steps, int bits) {
+std::vector<std::uint8_t> Bytes(const RecordedBins& bins) {
+  RangeEncoder range;
+  bins.WriteTo(range);
+  return range.Finish();
+}
+
+// Decodes a code of nothing but positions.
+Status Decode(const std::vector<std::uint8_t>& bytes, const PositionGraph& graph, const PositionSteps& steps, int bits,
+              std::vector<GridPosition>& positions) {
+  RangeDecoder range(bytes);
+  RecordedBins again;
+  SAC_RETURN_IF_ERROR(DecodePositions(range, graph, steps, bits, positions, &again));
+  if (!range.AtEnd()) return Status::Corrupt("wrong length");
+  EXPECT_EQ(Bytes(again), bytes);
+  return Status::Ok();
+}
+
+std::vector<GridPosition> Decoded(const RecordedBins& bins, const PositionGraph& graph, const PositionSteps& steps,
+                                  int bits) {
   std::vector<GridPosition> positions;
-  const Status status = DecodePositions(bytes, graph, steps, bits, positions);
+  const Status status = Decode(Bytes(bins), graph, steps, bits, positions);
   EXPECT_TRUE(status.ok()) << status.message();
   return positions;
 }
@@ -51,10 +70,10 @@ TEST(PositionPredictor, IsExactOnARegularSheet) {
     const std::uint32_t x = v % side, y = v / side;
     const GridPosition truth = {500 + 7 * x + 3 * y, 900 - 11 * x + 5 * y, 40 + 13 * y};
     predictor.Predict(v);
-    if (predictor.now().parallelograms > 0) {
-      EXPECT_EQ(predictor.now().spread, 0);
+    if (predictor.now().support > 0) {
+      EXPECT_EQ(predictor.now().disagreement, 0);
       for (std::size_t a = 0; a < 3; ++a)
-        EXPECT_NEAR(predictor.now().centre[a] / 16.0, truth[a], predictor.now().parallelograms > 1 ? 4 : 16) << v;
+        EXPECT_NEAR(predictor.now().centre[a] / 16.0, truth[a], predictor.now().support > 1 ? 4 : 16) << v;
     }
     predictor.Learn(truth);
   }
@@ -70,7 +89,7 @@ TEST(PositionPredictor, KnowsTheSurface) {
     predictor.Learn(sheet[v]);
   }
   predictor.Predict(3);
-  ASSERT_EQ(predictor.now().parallelograms, 1u);
+  ASSERT_EQ(predictor.now().support, 1u);
   EXPECT_EQ(predictor.now().axes, (std::array<std::size_t, 3>{1, 0, 2}));  // y is in the sheet, x and z are alike
   const std::int64_t z = predictor.Expected(2, {});
   EXPECT_EQ(predictor.Expected(2, {0, 16 * 20, 0}), z + 10);  // x + 20 is z + 20, of which it trusts half
@@ -183,14 +202,14 @@ TEST(Positions, MalformedCodesAreRefused) {
   Cells cells;
   for (std::uint32_t v = 0; v < side * side; ++v) cells.push_back({3.0 * (v % side), 3.0 * (v / side), v % 3 * 1.0});
   const PositionSteps steps{16, 0};
-  const std::vector<std::uint8_t> good = EncodePositions(cells, graph, steps, 4);
+  const std::vector<std::uint8_t> good = Bytes(EncodePositions(cells, graph, steps, 4));
   std::vector<GridPosition> positions;
-  EXPECT_TRUE(DecodePositions(good, graph, steps, 4, positions).ok());
+  EXPECT_TRUE(Decode(good, graph, steps, 4, positions).ok());
   std::vector<std::uint8_t> longer = good;
   longer.insert(longer.end(), {1, 2, 3, 4, 5});
-  EXPECT_EQ(DecodePositions(longer, graph, steps, 4, positions).code(), StatusCode::kCorrupt);
-  EXPECT_EQ(DecodePositions(good, graph, {160, 0}, 4, positions).code(), StatusCode::kCorrupt);  // off the grid
-  EXPECT_EQ(DecodePositions({}, graph, steps, 4, positions).code(), StatusCode::kCorrupt);
+  EXPECT_EQ(Decode(longer, graph, steps, 4, positions).code(), StatusCode::kCorrupt);
+  EXPECT_EQ(Decode(good, graph, {160, 0}, 4, positions).code(), StatusCode::kCorrupt);  // off the grid
+  EXPECT_EQ(Decode({}, graph, steps, 4, positions).code(), StatusCode::kCorrupt);
 }
 
 }  // namespace

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "format/harmonic_order.h"
+#include "format/plane_layout.h"
 #include "geometry/triangle_fields.h"
 #include "tests/test_meshes.h"
 

@@ -19,7 +19,8 @@ struct Fixture {
   }
   PositionMatrix Reconstruct() {
     Reconstructor fresh(shape, header);
-    EXPECT_TRUE(fresh.StartGroup() && fresh.StartFrame(false));
+    fresh.StartGroup();
+    EXPECT_TRUE(fresh.StartFrame(false));
     return fresh.Reconstruct(frame);
   }
 
@@ -67,7 +68,7 @@ TEST(Reconstruct, DoesNotDependOnTheFramesBefore) {
   f.frame.planes[kDisplacement][3 * 7 + 2] = 30;
   const PositionMatrix alone = f.Reconstruct();
   Reconstructor after(f.shape, f.header);
-  ASSERT_TRUE(after.StartGroup());
+  after.StartGroup();
   FrameCoefficients large = f.frame;
   for (const Plane p : {kMotion, kDisplacement}) {
     for (std::size_t i = 0; i < large.planes[p].size(); ++i) large.planes[p][i] = (1 << 30) + static_cast<int>(i);

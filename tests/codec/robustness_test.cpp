@@ -19,7 +19,7 @@ std::vector<Bytes> Streams() {
   EncoderSettings previous = plain;
   previous.reference_shape = ReferenceShape::kPrevious;
   previous.pyramid = 1;
-  previous.samples_per_harmonic = 0;
+  previous.handles_per_harmonic = 0;
   EncoderSettings ordered = plain;
   ordered.keep_order = true;
   ordered.group = 16;

@@ -36,10 +36,10 @@ TEST(Logistic, LogitIsTheInverse) {
   }
 }
 
-TEST(AdaptiveBit, FollowsTheFrequency) {
+TEST(BitModel, FollowsTheFrequency) {
   std::mt19937 random(1);
   for (const unsigned percent : {3u, 50u, 90u}) {
-    AdaptiveBit bit;
+    BitModel bit;
     EXPECT_EQ(bit.logit(), 0);
     double sum = 0;
     for (int i = 0; i < 4000; ++i) {
@@ -82,8 +82,8 @@ TEST(CodeMixed, ComesBackAndCostsWhatItShould) {
   for (int i = 0; i < kBins; ++i) bits[static_cast<std::size_t>(i)] = random() % 16 < (i % 2 ? 15u : 1u);
   static constexpr Mixer<3>::Inputs kWeights = {20000, 20000, 0};
   struct Models {
-    std::array<AdaptiveBit, 2> by_parity;
-    AdaptiveBit all;
+    std::array<BitModel, 2> by_parity;
+    BitModel all;
     Mixer<3> first{kWeights}, second{kWeights};
   };
   const auto code = [&](auto& coder, Models& models, int i, bool& bit) {

@@ -74,8 +74,8 @@ TEST(Packet, HasTheBytesOfTheDefinition) {
   EXPECT_EQ(WritePacket(PacketType::kEnd, {}).size(), 5u);
   const Bytes packet = WritePacket(PacketType::kGroup, Payload(32, 1));
   ASSERT_EQ(packet.size(), 2u + 32 + 4);
-  EXPECT_EQ(packet[0], 0x80 | 2);  // 32 * 4 + 2 = 130
-  EXPECT_EQ(packet[1], 1);
+  EXPECT_EQ(packet[0], 0x80 | 2);  // 32 * 16 + 2 = 514
+  EXPECT_EQ(packet[1], 4);
 }
 
 TEST(Packet, BoundariesAreKnown) {

@@ -311,5 +311,39 @@ TEST(ErrorMeter, PartsAreMeasuredAgainstTheirOwnSize) {
   EXPECT_NEAR(worst.kg, 100 * std::sqrt(0.25 / (12.0 / 9)), 1e-9);
 }
 
+TEST(ErrorMeter, GoesOnWithAnotherMesh) {
+  std::mt19937 random(5);
+  std::normal_distribution<float> number;
+  const auto clip = [&](std::size_t vertices, std::size_t frames) {
+    Clip c(frames, Positions(vertices));
+    for (Positions& frame : c) {
+      for (Vec3f& p : frame) p = {number(random), number(random), number(random)};
+    }
+    return c;
+  };
+  const std::vector<Triangle> one = {{0, 1, 2}, {1, 2, 3}}, other = {{0, 1, 2}, {2, 3, 4}, {0, 3, 4}};
+  const Clip a = clip(4, 3), b = clip(4, 3), c = clip(5, 6), d = clip(5, 6);
+  ErrorMeter both(one, 4), first(one, 4), second(other, 5);
+  KgError kg;
+  for (std::size_t f = 0; f < 3; ++f) {
+    both.Add(a[f], b[f]);
+    first.Add(a[f], b[f]);
+    kg.Add(a[f], b[f]);
+  }
+  both.BeginMesh(other, 5);
+  for (std::size_t f = 0; f < 6; ++f) {
+    both.Add(c[f], d[f]);
+    second.Add(c[f], d[f]);
+    kg.Add(c[f], d[f]);
+  }
+  const DistortionMetrics m = both.Result(), m1 = first.Result(), m2 = second.Result();
+  EXPECT_EQ(m.frames, 9u);
+  EXPECT_DOUBLE_EQ(m.kg, kg.Value());
+  EXPECT_DOUBLE_EQ(m.sted_s, std::sqrt((3 * m1.sted_s * m1.sted_s + 6 * m2.sted_s * m2.sted_s) / 9));
+  EXPECT_DOUBLE_EQ(m.sted_t, std::sqrt((3 * m1.sted_t * m1.sted_t + 6 * m2.sted_t * m2.sted_t) / 9));
+  EXPECT_DOUBLE_EQ(m.max_error, std::max(m1.max_error, m2.max_error));
+  EXPECT_DOUBLE_EQ(m.worst_part.kg, std::max(m1.worst_part.kg, m2.worst_part.kg));
+}
+
 }  // namespace
 }  // namespace sac

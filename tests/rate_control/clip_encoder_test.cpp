@@ -36,5 +36,20 @@ TEST(EncodeClip, TellsOfAttributesThatAreLost) {
   EXPECT_TRUE(EncodeStill(mesh).lost_texture_coordinates);
 }
 
+TEST(EncodeClip, RefusesAMeshThatIsNoneBeforeItMeasures) {
+  const Clip cube{HardCubeMesh(), {HardCubeMesh().positions, HardCubeMesh().positions}};
+  Clip broken = cube;
+  broken.mesh.triangles[5][1] = 1u << 30;
+  MemoryClipReader reader(broken);
+  EncodedClip result;
+  for (const std::uint32_t rounds : {0u, 1u}) {
+    ClipEncoding encoding;
+    encoding.reference_rounds = rounds;
+    const Status status = EncodeClip(reader, encoding, {}, result);
+    EXPECT_EQ(status.code(), StatusCode::kInvalidArgument);
+    EXPECT_EQ(status.message(), "a triangle of a missing vertex");
+  }
+}
+
 }  // namespace
 }  // namespace sac

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <vector>
 
 #include "codec/encode/quality.h"
 #include "rate_control/target_search.h"
@@ -28,7 +29,7 @@ class SynthSource {
       ++trials;
       return RunTrial(clip_, trial);
     };
-    return SearchTargets(targets, base, static_cast<std::uint32_t>(clip_.mesh().positions.size()), run, best);
+    return SearchTargets(targets, base, clip_.mesh(), run, best);
   }
   Trial Run(const EncoderSettings& settings) {
     Trial trial;
@@ -169,65 +170,121 @@ TEST(RateSearch, SaysWhatCannotBeReached) {
   EXPECT_EQ(clip.Search({-1.0, {}, {}}, best).code(), StatusCode::kInvalidArgument);
 }
 
-// Whatever is tried in between, all of the range gives less error for more bytes.
-TEST(RateSearch, QualityIsMonotone) {
-  SynthSource clip(SynthKind::kWalker, 2000, 12);
+// Encodes a clip at rising qualities and expects no error to rise.
+void ExpectMonotone(SynthSource& clip, const std::vector<double>& qualities, EncoderSettings settings) {
   Trial last;
-  for (int quality = 0; quality <= 100; quality += 10) {
-    EncoderSettings settings;
+  for (const double quality : qualities) {
     settings.quality = quality;
     const Trial trial = clip.Run(settings);
-    if (quality > 0) {
+    if (last.bytes > 0) {
       EXPECT_GT(trial.bytes, last.bytes) << quality;
-      EXPECT_LT(trial.kg, last.kg) << quality;
+      EXPECT_LE(trial.kg, last.kg) << quality;
+      EXPECT_LE(trial.sted, last.sted) << quality;
     }
     last = trial;
   }
 }
 
-// With few harmonics to go by; with more, detail takes over from them and the smooth planes become coarser again.
-TEST(RateSearch, StepsOfQualitiesNeverGrow) {
-  OperatingPoint last = PointOfQuality(0, {200, 200});
-  for (double quality = 0.5; quality <= 100; quality += 0.5) {
-    const OperatingPoint s = PointOfQuality(quality, {200, 200});
-    EXPECT_LE(s.motion_step, last.motion_step) << quality;
-    EXPECT_LE(s.displacement_step, last.displacement_step) << quality;
-    EXPECT_GE(s.position_bits, last.position_bits) << quality;
-    EXPECT_EQ(s.harmonics, 200) << quality;
-    if (last.detail_step > 0) {
-      EXPECT_LE(s.detail_step, last.detail_step) << quality;
-    }
-    last = s;
+// Over all of the range, and closely where rows with more harmonics and with detail begin.
+TEST(Quality, IsMonotone) {
+  for (const SynthKind kind : {SynthKind::kWalker, SynthKind::kFlag}) {
+    SynthSource clip(kind, 2000, 4);
+    ExpectMonotone(clip, {0, 25, 50, 65, 78, 79, 90}, {});
   }
 }
 
-TEST(RateSearch, HarmonicsOfQualitiesSuitTheMesh) {
+// A coarse detail plane would raise STED here, and few harmonics are no reason for one.
+TEST(Quality, IsMonotoneInDenseMeshes) {
+  SynthSource clip(SynthKind::kFlag, 8000, 3);
+  EncoderSettings settings;
+  settings.harmonics = 100;
+  ExpectMonotone(clip, {60, 65, 79}, settings);
+}
+
+// The same motion of meshes with few and many vertices.
+TEST(Quality, StedDoesNotDependOnTheDensity) {
+  SynthSource sparse(SynthKind::kFlag, 1500, 3), dense(SynthKind::kFlag, 12'000, 3);
+  EncoderSettings settings;
+  settings.harmonics = 100;
+  const double ratio = dense.Run(settings).sted / sparse.Run(settings).sted;
+  EXPECT_GT(ratio, 1 / 1.3);
+  EXPECT_LT(ratio, 1.3);
+}
+
+TEST(Quality, StepsNeverGrow) {
+  for (const double most : {200.0, 500.0, 1000.0}) {
+    OperatingPoint last = PointOfQuality(0, most);
+    for (double quality = 0.5; quality <= 100; quality += 0.5) {
+      const OperatingPoint s = PointOfQuality(quality, most);
+      EXPECT_LE(s.motion_step, last.motion_step) << quality;
+      EXPECT_LE(s.displacement_step, last.displacement_step) << quality;
+      EXPECT_GE(s.position_bits, last.position_bits) << quality;
+      EXPECT_GE(s.harmonics, last.harmonics) << quality;
+      if (last.detail_step > 0) {
+        EXPECT_GT(s.detail_step, 0) << quality;
+        EXPECT_LE(s.detail_step, last.detail_step) << quality;
+      }
+      last = s;
+    }
+  }
+}
+
+// The same shape with edges half as long.
+TEST(Quality, StepsFollowTheEdges) {
+  const auto square = [](std::uint32_t cells) {
+    Mesh mesh;
+    for (std::uint32_t y = 0; y <= cells; ++y) {
+      for (std::uint32_t x = 0; x <= cells; ++x) {
+        mesh.positions.push_back(
+            {static_cast<float>(x) / static_cast<float>(cells), static_cast<float>(y) / static_cast<float>(cells), 0});
+        const std::uint32_t v = y * (cells + 1) + x;
+        if (x < cells && y < cells) {
+          mesh.triangles.push_back({v, v + 1, v + cells + 1});
+          mesh.triangles.push_back({v + 1, v + cells + 2, v + cells + 1});
+        }
+      }
+    }
+    return mesh;
+  };
+  const EdgeScale coarse = EdgeScaleOf(square(64), 0.4), fine = EdgeScaleOf(square(128), 0.4);
+  EXPECT_NEAR(coarse.median, 1.0 / 64 / 0.4, 1e-6);
+  EXPECT_NEAR(fine.median, coarse.median / 2, 1e-6);
+  EXPECT_NEAR(fine.more_bits - coarse.more_bits, 0.8, 1e-6);
+  const double more = PointOfQuality(90, 200, fine).position_bits - PointOfQuality(90, 200).position_bits;
+  EXPECT_NEAR(more, fine.more_bits, 1e-9);
+  EXPECT_NEAR(PointOfQuality(90, 200, fine).detail_step, PointOfQuality(90, 200, coarse).detail_step / 2, 1e-9);
+  Mesh point;
+  point.positions = {{0, 0, 0}};
+  EXPECT_EQ(EdgeScaleOf(point, 1).more_bits, 0);  // no edges
+}
+
+TEST(Quality, HarmonicsSuitTheMesh) {
   for (const std::uint32_t vertices : {1u, 300u, 3000u, 10'000u, 50'000u, 1'000'000u}) {
-    const HarmonicLimits limits = HarmonicLimitsOf(vertices);
-    const double most = limits.most();
+    const double most = MostHarmonics(vertices);
     EXPECT_GE(most, 200);
     EXPECT_LE(most, std::max(200.0, vertices / 9.0));
     for (double quality = 0; quality <= 100; quality += 0.5) {
-      EXPECT_LE(PointOfQuality(quality, limits).harmonics, most) << vertices << " " << quality;
+      EXPECT_LE(PointOfQuality(quality, most).harmonics, most) << vertices << " " << quality;
       EXPECT_LE(SmoothPointOfQuality(quality, most).harmonics, most) << vertices << " " << quality;
       EXPECT_EQ(SmoothPointOfQuality(quality, most).detail_step, 0);
     }
-    EXPECT_EQ(PointOfQuality(50, limits).harmonics, 200);  // what starts quickly
+    EXPECT_EQ(PointOfQuality(50, most).harmonics, 200);  // what starts quickly
   }
-  EXPECT_GT(PointOfQuality(70, HarmonicLimitsOf(10'000)).harmonics, 500);
+  EXPECT_GT(PointOfQuality(70, MostHarmonics(10'000)).harmonics, 500);
 }
 
-// Where decoders could not start in time with more harmonics, the steps still become finer up to where detail sets in:
-// coarse detail would make STED worse.
-TEST(RateSearch, QualitiesOfLargeMeshesDoWithoutCoarseDetail) {
-  const HarmonicLimits limits = HarmonicLimitsOf(60'000);
-  OperatingPoint last = PointOfQuality(60, limits);
-  for (const double quality : {65.0, 70.0, 75.0}) {
-    const OperatingPoint s = PointOfQuality(quality, limits);
-    EXPECT_EQ(s.detail_step, 0) << quality;
-    EXPECT_EQ(s.harmonics, 200) << quality;
-    EXPECT_LT(s.displacement_step, last.displacement_step) << quality;
-    last = s;
+// Where decoders could not start in time with more harmonics, and where more would be one for a few vertices, the steps
+// still become finer up to where detail sets in: coarse detail would make STED worse.
+TEST(Quality, DoesWithoutCoarseDetail) {
+  for (const std::uint32_t vertices : {400u, 3000u, 60'000u}) {
+    const double most = MostHarmonics(vertices);
+    OperatingPoint last = PointOfQuality(60, most);
+    for (const double quality : {65.0, 70.0, 75.0, 78.0}) {
+      const OperatingPoint s = PointOfQuality(quality, most);
+      EXPECT_EQ(s.detail_step, 0) << quality;
+      EXPECT_LT(s.displacement_step, last.displacement_step) << quality;
+      last = s;
+    }
   }
 }
 

@@ -2,7 +2,7 @@
 """Malformed streams: spec.md 11."""
 
 LIMIT_RULES = {3, 22, 23, 44, 48, 60, 63}
-UNSUPPORTED_RULES = {11, 46}
+UNSUPPORTED_RULES = {11, 46, 69}
 
 
 class StreamError(Exception):

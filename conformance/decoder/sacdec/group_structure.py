@@ -2,7 +2,7 @@
 """Which frames a group has in which order, and steps of levels: spec.md 6.1 and 6.3."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from fractions import Fraction
 
 
@@ -35,6 +35,21 @@ def group_structure(frames: int, pyramid: int) -> list[Slot]:
         halve(last, following, 1)
         last = following
     return slots
+
+
+def layered_order(slots: Sequence[Slot], base_levels: int) -> list[Slot]:
+    """spec.md 6.1, "Layers": the slots of a group in the coding order of a layered one."""
+    order = sorted(range(len(slots)), key=lambda index: slot_layer(slots[index], base_levels))
+    number = {index: place for place, index in enumerate(order)}
+    return [
+        replace(slots[index], references=tuple(number[reference] for reference in slots[index].references))
+        for index in order
+    ]
+
+
+def slot_layer(slot: Slot, base_levels: int) -> int:
+    """spec.md 6.1, "Layers": the number of the layer that a slot's frame is in."""
+    return max(slot.level - base_levels + 1, 0)
 
 
 def chain_slot(index: int) -> Slot:

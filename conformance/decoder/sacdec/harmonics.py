@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""The harmonic basis of components and patches, and its fingerprint: spec.md 6.4 and 6.6."""
+"""The harmonics of components and patches, and their fingerprint: spec.md 6.4 and 6.6."""
 
 import itertools
 from collections.abc import Sequence
@@ -11,10 +11,11 @@ import scipy.sparse as sp
 import scipy.sparse.linalg
 
 from .errors import StreamError, require
+from .handles import Blend, blend_of_all, blend_of_handles, handle_count
 from .i_frame import SideInformation
 from .limits import Limits
 from .sequence_header import SequenceHeader
-from .shape import Edges, laplacian, uneven_weights
+from .shape import Edges, laplacian, uneven_edges
 from .vertices import Mesh
 
 MOST_DENSE = 250  # vertices; more make a dense eigenproblem slow
@@ -23,10 +24,14 @@ MOST_RESTARTS = 60  # of Lanczos; surfaces take a few
 
 @dataclass
 class Harmonics:
-    """Harmonics `vectors` [n_c, l_c] of vertices from `begin` on, with their eigenvalues [l_c]."""
+    """Harmonics of vertices from `begin` on, with their eigenvalues `values` [l_c].
+
+    `columns` [functions, l_c] are their coefficients z, `vectors` [n_c, l_c] their values at vertices, Psi z.
+    """
 
     begin: int
     values: np.ndarray
+    columns: np.ndarray
     vectors: np.ndarray
 
 
@@ -35,21 +40,22 @@ def generic_numbers(integers: np.ndarray) -> np.ndarray:
     return ((integers.astype(np.uint64) + np.uint64(1)) * np.uint64(2654435761) % np.uint64(2**32)) / 2**31 - 1
 
 
-def scale_and_sign(begin: int, values: np.ndarray, vectors: np.ndarray, masses: np.ndarray) -> Harmonics:
+def scale_and_sign(blend: Blend, values: np.ndarray, columns: np.ndarray, masses: np.ndarray) -> Harmonics:
     """spec.md 6.4.3: a constant harmonic 0, mean squares of 1, and signs."""
-    vectors = vectors.copy()
+    columns = columns.copy()
     values = np.maximum(values, 0)
-    vectors[:, 0] = 1
+    columns[:, 0] = blend.constant()
     values[0] = 0
-    vectors /= np.sqrt((masses[:, None] * vectors**2).sum(axis=0) / masses.sum())
+    vectors = blend.functions @ columns
+    factors = 1 / np.sqrt((masses[:, None] * vectors**2).sum(axis=0) / masses.sum())
     negative = generic_numbers(np.arange(len(vectors))) @ vectors < 0
     negative[0] = False
-    vectors[:, negative] *= -1
-    return Harmonics(begin, values, vectors)
+    factors[negative] *= -1
+    return Harmonics(blend.begin, values, columns * factors, vectors * factors)
 
 
 def exact_basis(matrix: sp.csc_matrix, masses: np.ndarray, count: int) -> tuple[np.ndarray, np.ndarray]:
-    """The `count` smallest eigenpairs of L h = lambda D h (6.4), D the diagonal of the masses.
+    """The `count` smallest eigenpairs of L h = lambda D h (6.4.6), D the diagonal of the masses.
 
     Both sides are scaled by D^(-1/2), which makes an ordinary symmetric eigenproblem.
     """
@@ -66,70 +72,65 @@ def exact_basis(matrix: sp.csc_matrix, masses: np.ndarray, count: int) -> tuple[
     return values, root @ vectors
 
 
-def farthest_points(grid: np.ndarray, count: int) -> tuple[list[int], int]:
-    """spec.md 6.4.4 step 1: the samples, and the greatest squared distance of a vertex to its nearest one."""
-    samples = [0]
-    nearest = ((grid - grid[0]) ** 2).sum(axis=1)
-    while len(samples) < count:
-        samples.append(int(np.argmax(nearest)))  # the smallest number of several
-        nearest = np.minimum(nearest, ((grid - grid[samples[-1]]) ** 2).sum(axis=1))
-    return samples, int(nearest.max())
+def leader_count(harmonics: int, handles: int) -> int:
+    """How many of a component's handles lead: spec.md 6.4.6."""
+    return min(handles, (4 * harmonics + 2) // 3)
 
 
-def radial_functions(grid: np.ndarray, samples: list[int], covering: int) -> np.ndarray:
-    """spec.md 6.4.4 step 2: S [n_c, s]."""
-    radius = 3 * np.sqrt(max(covering, 1))
-    functions = np.empty((len(grid), len(samples)))
-    for i, sample in enumerate(samples):
-        t = np.sqrt(((grid - grid[sample]) ** 2).sum(axis=1)) / radius
-        functions[:, i] = np.where(t < 1, (1 - t) ** 4 * (4 * t + 1), 0)
-    return functions / functions.sum(axis=1, keepdims=True)
-
-
-def reduced_basis(
-    matrix: sp.csc_matrix, masses: np.ndarray, grid: np.ndarray, samples: int, count: int
+def blended_basis(
+    blend: Blend, matrix: sp.csc_matrix, masses: np.ndarray, count: int
 ) -> tuple[np.ndarray, np.ndarray]:
-    """spec.md 6.4.4: Rayleigh-Ritz in radial functions, one inverse iteration, Rayleigh-Ritz again."""
-    functions = radial_functions(grid, *farthest_points(grid, samples))
-    d = sp.diags(masses)
-    _, small = scipy.linalg.eigh(
-        functions.T @ (matrix @ functions), functions.T @ (d @ functions), subset_by_index=(0, count - 1)
-    )
-    h = functions @ small
-    z = scipy.sparse.linalg.splu((matrix + d).tocsc()).solve(d @ h)
-    values, mixed = scipy.linalg.eigh(z.T @ (matrix @ z), z.T @ (d @ z))
-    return values, z @ mixed
+    """spec.md 6.4.6, "Otherwise": eigenvalues [count] and columns z [4 H, count], from the Laplacian [n_c, n_c]."""
+    s, _ = blend.stiffness(matrix)
+    g = (blend.functions.T @ sp.diags(masses) @ blend.functions).tocsc()
+    solver = scipy.sparse.linalg.splu((s + g).tocsc())
+    z = np.zeros((s.shape[0], leader_count(count, len(blend.handles))))
+    z[blend.translations(), blend.leader_of] = 1
+    for _ in range(2):
+        y = solver.solve(g @ z)
+        values, mixed = scipy.linalg.eigh(y.T @ (s @ y), y.T @ (g @ y), subset_by_index=(0, count - 1))
+        z = y @ mixed
+    return values, z
 
 
-def _run_matrix(mesh: Mesh, edges: Edges, weights: np.ndarray, begin: int, end: int) -> sp.csc_matrix:
-    """The Laplacian (6.4.2) of the vertices from `begin` to `end` - 1 and the edges with both ends in them."""
-    inside = np.all((edges.ends >= begin) & (edges.ends < end), axis=1)
-    ends = edges.ends[inside] - begin
-    return laplacian(end - begin, ends, uneven_weights(ends, weights[inside], mesh.grid[begin:end]))
-
-
-def _uses_reduced(samples: int, grid: np.ndarray) -> bool:
-    """spec.md 6.4: whether a component's basis is the reduced one."""
-    return 0 < samples < len(grid) and len(np.unique(grid, axis=0)) >= samples
-
-
-def _check_limits(mesh: Mesh, side: SideInformation, header: SequenceHeader, limits: Limits) -> None:
-    """spec.md 9: harmonics, basis_values and basis_work."""
-    values = work = 0
+def _check_limits(
+    mesh: Mesh, side: SideInformation, header: SequenceHeader, limits: Limits, payload_bytes: int
+) -> None:
+    """spec.md 9: harmonics, basis_values, and the work of the I-frame's payload and of a frame."""
+    values = work = frame_work = 0
     for n, l in zip(np.diff(mesh.components).tolist(), side.harmonics):
         require(l <= limits.harmonics, 44, f"a component of {l} harmonics")
+        handles = handle_count(n, l, side.handles_per_harmonic, header.reference_shape)
+        b = 2 * l + 20
+        if handles is not None:
+            values += 5 * handles * l
+            e = 4 * l // 3
+            work += 6000 * n + 4 * handles * e * (6 * e + handles) + 15 * e**3
+            frame_work += 9 * l * handles + 3 * l * 4 * handles
+            continue
         values += n * l
-        work += 10 * n * l * l
-        samples = side.samples_per_harmonic * l
-        if 0 < samples < n:
-            work += samples**3
-        elif 2 * l + 20 >= n:
-            work += n**3
+        frame_work += 12 * l * n
+        if l == 1:
+            work += n
+        else:
+            work += 10 * n**3 if b >= n or n <= 96 else 5 * b * b * n
     if header.detail_step > 0:
         values += header.vertices * header.patch_size
         work += 10 * header.vertices * header.patch_size**2
+    most = min(limits.basis_work, limits.free_work + limits.work_per_byte * payload_bytes)
     require(values <= limits.basis_values, 44, f"a basis of {values} values")
-    require(work <= limits.basis_work, 44, f"a basis that costs {work} multiplications")
+    require(work <= most, 44, f"a basis that costs {work} multiplications")
+    require(frame_work <= limits.frame_work, 44, f"a frame that costs {frame_work} multiplications")
+
+
+def _component_blend(
+    mesh: Mesh, ends: np.ndarray, shape: np.ndarray, begin: int, end: int, handles: int | None, harmonics: int
+) -> Blend:
+    """spec.md 6.4.4 for the component of the vertices from `begin` to `end` - 1, `ends` counted from `begin`."""
+    if handles is None:
+        return blend_of_all(begin, end - begin)
+    leaders = leader_count(harmonics, handles)
+    return blend_of_handles(begin, ends, mesh.grid[begin:end], shape[begin:end], handles, leaders)
 
 
 def component_harmonics(
@@ -137,39 +138,48 @@ def component_harmonics(
     edges: Edges,
     weights: np.ndarray,
     masses: np.ndarray,
+    shape: np.ndarray,
     side: SideInformation,
     header: SequenceHeader,
     limits: Limits,
-) -> list[Harmonics]:
-    """spec.md 6.4: the harmonics of each component."""
-    _check_limits(mesh, side, header, limits)
-    result = []
+    payload_bytes: int,
+) -> tuple[list[Blend], list[Harmonics]]:
+    """spec.md 6.4: the handles and the harmonics of each component.
+
+    `weights` [e] and `masses` [n] are those on M'0, whose positions are `shape` [n, 3]; `payload_bytes` are those of
+    the I-frame. Rules R44 and R45.
+    """
+    _check_limits(mesh, side, header, limits, payload_bytes)
+    blends, result = [], []
     for begin, end, count in zip(mesh.components, mesh.components[1:], side.harmonics):
-        own_masses, grid = masses[begin:end], mesh.grid[begin:end]
-        samples = side.samples_per_harmonic * count
-        matrix = _run_matrix(mesh, edges, weights, begin, end)
+        handles = handle_count(end - begin, count, side.handles_per_harmonic, header.reference_shape)
+        ends, uneven = uneven_edges(edges, weights, mesh.grid, begin, end)
+        blend = _component_blend(mesh, ends, shape, begin, end, handles, count)
+        matrix = laplacian(end - begin, ends, uneven)
+        own_masses = masses[begin:end]
         try:
-            if _uses_reduced(samples, grid):
-                values, vectors = reduced_basis(matrix, own_masses, grid, samples, count)
+            if handles is None:
+                values, columns = exact_basis(matrix, own_masses, count)
             else:
-                values, vectors = exact_basis(matrix, own_masses, count)
-        except (np.linalg.LinAlgError, sp.linalg.ArpackError, RuntimeError) as error:
+                values, columns = blended_basis(blend, matrix, own_masses, count)
+        except (np.linalg.LinAlgError, sp.linalg.ArpackError, RuntimeError, ValueError) as error:
             raise StreamError(45, f"the harmonics of vertices {begin} to {end - 1}: {error}") from error
-        result.append(scale_and_sign(begin, values, vectors, own_masses))
-    return result
+        blends.append(blend)
+        result.append(scale_and_sign(blend, values, columns, own_masses))
+    return blends, result
 
 
 def patch_harmonics(mesh: Mesh, edges: Edges, weights: np.ndarray) -> list[Harmonics]:
-    """spec.md 6.4.5: all harmonics of each patch."""
+    """spec.md 6.4.7: all harmonics of each patch."""
     result = []
     for begin, end in zip(mesh.patches, mesh.patches[1:]):
-        matrix = _run_matrix(mesh, edges, weights, begin, end)
+        matrix = laplacian(end - begin, *uneven_edges(edges, weights, mesh.grid, begin, end))
         ones = np.ones(end - begin)
         try:
-            values, vectors = exact_basis(matrix, ones, end - begin)
+            values, columns = exact_basis(matrix, ones, end - begin)
         except np.linalg.LinAlgError as error:
             raise StreamError(45, f"the harmonics of the patch of vertices {begin} to {end - 1}: {error}") from error
-        result.append(scale_and_sign(begin, values, vectors, ones))
+        result.append(scale_and_sign(blend_of_all(begin, end - begin), values, columns, ones))
     return result
 
 

@@ -10,29 +10,11 @@ from .range_coder import RangeDecoder, SignedModels, UnsignedModels
 from .sequence_header import SequenceHeader
 
 
-@dataclass
-class IFrameParts:
-    """The elements of spec.md 5. Without a mesh, positions is None."""
-
-    mesh: bytes
-    position_step: int
-    position_slope: int
-    positions: bytes | None
-    side_information: bytes
-
-
-def split_i_frame(payload: bytes) -> IFrameParts:
-    """spec.md 5, the table."""
+def split_i_frame(payload: bytes) -> tuple[bytes, RangeDecoder]:
+    """spec.md 5, the table: the mesh and the range code after it."""
     reader = ByteReader(payload, end_rule=24, varint_rule=24)
     mesh = reader.bytes(reader.varint())
-    position_step = position_slope = 0
-    positions = None
-    if mesh:
-        position_step = reader.varint()
-        position_slope = reader.varint()
-        reader.end_rule = reader.varint_rule = 38
-        positions = reader.bytes(reader.varint())
-    return IFrameParts(mesh, position_step, position_slope, positions, reader.rest())
+    return mesh, RangeDecoder(reader.rest(), rule=30)
 
 
 @dataclass
@@ -48,13 +30,15 @@ class LooseVertex:
 class SideInformation:
     """spec.md 5.2. `order` is None unless the author's order is kept; welds are pairs (point, onto)."""
 
+    position_step: int
+    position_slope: int
     welds: list[tuple[int, int]]
     has_normals: int
     has_colors: int
     loose_vertices: list[LooseVertex]
     loose_triangles: list[tuple[int, ...]]
     harmonics: list[int]
-    samples_per_harmonic: int
+    handles_per_harmonic: int
     fingerprint: tuple[float, float]
     order: list[int] | None
 
@@ -147,27 +131,29 @@ def _order(decoder: RangeDecoder, header: SequenceHeader) -> list[int]:
     return order
 
 
-def parse_side_information(data: bytes, header: SequenceHeader) -> SideInformation:
+def parse_side_information(decoder: RangeDecoder, header: SequenceHeader, has_mesh: bool) -> SideInformation:
     """spec.md 5.2. Every row of its table has models of its own, all fresh."""
-    decoder = RangeDecoder(data, rule=30)
+    position_step = UnsignedModels().decode(decoder) if has_mesh else 0
+    position_slope = UnsignedModels().decode(decoder) if has_mesh else 0
     welds = _welds(decoder, header)
     has_normals = decoder.raw(1)
     has_colors = decoder.raw(1)
     loose_vertices = _loose_vertices(decoder, header, has_normals, has_colors)
     loose_triangles = _loose_triangles(decoder, header)
     harmonics = _harmonics(decoder, header)
-    samples_per_harmonic = UnsignedModels().decode(decoder)
+    handles_per_harmonic = UnsignedModels().decode(decoder)
     fingerprint = (_raw_f32(decoder), _raw_f32(decoder))
     order = _order(decoder, header) if decoder.raw(1) else None
-    decoder.finish()
     return SideInformation(
+        position_step,
+        position_slope,
         welds,
         has_normals,
         has_colors,
         loose_vertices,
         loose_triangles,
         harmonics,
-        samples_per_harmonic,
+        handles_per_harmonic,
         fingerprint,
         order,
     )

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from .range_coder import RangeDecoder
+from .range_coder import BitModel, RangeDecoder
 
 MOST = 2816  # the greatest logit
 # spec.md 7.4.1: the probability of the logits 0, 128, 256 to 2816.
@@ -28,7 +28,7 @@ def _squash(x: int) -> int:
 
 _SQUASH = [_squash(x) for x in range(-MOST, MOST + 1)]
 # stretch depends on p >> 4 only.
-_STRETCH = [min(bisect_left(_SQUASH, 16 * i + 8) - MOST, MOST) for i in range(4096)]
+_STRETCH = [bisect_left(_SQUASH, 16 * i + 8) - MOST for i in range(4096)]
 _CONFIDENCE = [512 * n // (2 * n + 3) for n in range(61)]
 
 
@@ -37,33 +37,17 @@ def squash(x: int) -> int:
 
 
 def stretch(p: int) -> int:
-    """The smallest x with squash(x) >= 16 * (p >> 4) + 8, at most 2816."""
+    """The smallest x with squash(x) >= 16 * (p >> 4) + 8."""
     return _STRETCH[p >> 4]
 
 
-class State:
-    """spec.md 7.4.2: what one context has seen of one bin."""
-
-    __slots__ = ("p", "n")
-
-    def __init__(self) -> None:
-        self.p = 32768
-        self.n = 0
-
-    def input(self) -> int:
-        return (_STRETCH[self.p >> 4] * _CONFIDENCE[self.n]) >> 8
-
-    def update(self, decoded: int) -> None:
-        rate = 655360 // (10 * self.n + 16)
-        if decoded:
-            self.p += ((65535 - self.p) * rate) >> 16
-        else:
-            self.p -= (self.p * rate) >> 16
-        self.n = min(self.n + 1, 60)
+def model_input(model: BitModel) -> int:
+    """What a bit model says to a mixer: spec.md 7.4.2."""
+    return (_STRETCH[model.p >> 4] * _CONFIDENCE[model.n]) >> 8
 
 
 class Table(dict):
-    """States or mixers by their context, made fresh by `make` when first asked for."""
+    """Bit models or mixers by their key, made fresh by `make` when first asked for."""
 
     def __init__(self, make) -> None:
         super().__init__()
@@ -86,19 +70,18 @@ def _learn(mixer: Mixer, inputs: Sequence[int], x: int, decoded: int) -> None:
 
 
 def decode_mixed(
-    decoder: RangeDecoder, states: Sequence[State], features: Sequence[int], first: Mixer, second: Mixer
+    decoder: RangeDecoder, models: Sequence[BitModel], features: Sequence[int], first: Mixer, second: Mixer
 ) -> int:
-    """spec.md 7.4.2, "Mixing a bin"; the inputs are those of the states and then the features."""
-    inputs = [state.input() for state in states]
+    """spec.md 7.4.2, `mixed`; the inputs are those of the models and then the features."""
+    inputs = [model_input(model) for model in models]
     inputs.extend(features)
     x_1 = min(max(sum(map(int.__mul__, inputs, first)) >> 16, -MOST), MOST)
     x_2 = min(max(sum(map(int.__mul__, inputs, second)) >> 16, -MOST), MOST)
-    p = min(max(_SQUASH[((x_1 + x_2) >> 1) + MOST], 24), 65512)
-    decoded = decoder.bin_below((decoder.range >> 16) * p)
+    decoded = decoder.bin(min(max(_SQUASH[((x_1 + x_2) >> 1) + MOST], 24), 65512))
     _learn(first, inputs, x_1, decoded)
     _learn(second, inputs, x_2, decoded)
-    for state in states:
-        state.update(decoded)
+    for model in models:
+        model.update(decoded)
     return decoded
 
 

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from .stream import Clip
+from .vertices import Mesh
 
 
 def _lines(keyword: str, rows: np.ndarray) -> list[str]:
@@ -13,8 +14,7 @@ def _lines(keyword: str, rows: np.ndarray) -> list[str]:
     return [" ".join([keyword, *(f"{x:.9g}" for x in row)]) for row in rows.astype(np.float32).tolist()]
 
 
-def _faces(clip: Clip, with_normals: bool) -> list[str]:
-    mesh = clip.mesh
+def _faces(mesh: Mesh, with_normals: bool) -> list[str]:
     normals = mesh.triangles if mesh.normal_triangles is None else mesh.normal_triangles
     columns = [mesh.triangles]
     pattern = "%d"
@@ -29,12 +29,14 @@ def _faces(clip: Clip, with_normals: bool) -> list[str]:
 
 
 def write_frames(clip: Clip, directory: Path) -> None:
-    """frame_0000.obj and so on, vertices by their final numbers (spec.md 5.3), without the offset. Normals are the first
-    frame's, so only that one has them."""
+    """frame_0000.obj and so on, vertices by their final numbers (spec.md 5.3), without the offset. Normals are those of
+    the first frame of a segment, so only that one has them."""
     directory.mkdir(parents=True, exist_ok=True)
-    still = [] if clip.mesh.uvs is None else _lines("vt", clip.mesh.uvs)
-    for index, positions in enumerate(clip.frames):
-        with_normals = index == 0 and clip.mesh.normals is not None
-        normals = _lines("vn", clip.mesh.normals) if with_normals else []
-        text = "\n".join([*_lines("v", positions), *still, *normals, *_faces(clip, with_normals)]) + "\n"
-        (directory / f"frame_{index:04d}.obj").write_text(text)
+    for segment in clip.segments:
+        mesh = segment.mesh
+        still = [] if mesh.uvs is None else _lines("vt", mesh.uvs)
+        for index, positions in enumerate(segment.frames):
+            with_normals = index == 0 and mesh.normals is not None
+            normals = _lines("vn", mesh.normals) if with_normals else []
+            text = "\n".join([*_lines("v", positions), *still, *normals, *_faces(mesh, with_normals)]) + "\n"
+            (directory / f"frame_{segment.first_frame + index:04d}.obj").write_text(text)

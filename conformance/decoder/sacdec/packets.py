@@ -9,7 +9,9 @@ from .errors import require
 from .limits import Limits
 
 MAGIC = bytes.fromhex("5341431A")
-SEQUENCE_HEADER, I_FRAME, GROUP, END = range(4)
+SEQUENCE_HEADER, I_FRAME, GROUP, LAYER, END = range(5)
+RESERVED = range(5, 8)
+METADATA = 8  # from here on they are skippable
 
 
 def stream_reader(data: bytes) -> ByteReader:
@@ -24,12 +26,12 @@ def read_packet(reader: ByteReader, limits: Limits) -> tuple[int, bytes]:
     """spec.md 3: a packet's type and payload, its CRC checked."""
     begin = reader.position
     tag = reader.varint()
-    size = tag >> 2
+    size = tag >> 4
     require(size <= limits.packet_bytes, 3, f"a packet of {size} bytes")
     payload = reader.bytes(size)
     crc = zlib.crc32(reader.data[begin : reader.position])
     require(reader.u32() == crc, 4, "the CRC of a packet is wrong")
-    return tag & 3, payload
+    return tag & 15, payload
 
 
 def read_records(reader: ByteReader, limits: Limits) -> Iterator[bytes]:

@@ -35,14 +35,14 @@ class PositionGraph:
         vertices = len(self.neighbours)
         coded = [False] * vertices
         count = [0] * vertices
-        queues = [deque[int]() for _ in range(9)]  # 1 to 8
+        queues = [deque[int]() for _ in range(5)]  # 1 to 4
         lowest = 0
 
         def from_queues() -> int | None:
-            for number in range(8, 0, -1):
+            for number in range(4, 0, -1):
                 while queues[number]:
                     vertex = queues[number].popleft()
-                    if not coded[vertex] and count[vertex] == number:
+                    if not coded[vertex]:
                         return vertex
             return None
 
@@ -55,6 +55,6 @@ class PositionGraph:
             coded[vertex] = True
             yield vertex
             for w in self.neighbours[vertex]:
-                if not coded[w] and count[w] < 8:
+                if not coded[w] and count[w] < 4:
                     count[w] += 1
                     queues[count[w]].append(w)

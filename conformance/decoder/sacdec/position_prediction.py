@@ -10,8 +10,8 @@ from .position_graph import PositionGraph
 Vector = list[int]  # of the three axes, in 1/16 of a grid cell
 
 
-def quotient(a: int, b: int) -> int:
-    """a / b of spec.md 5.5 for b above 0: rounded towards zero."""
+def tdiv(a: int, b: int) -> int:
+    """tdiv of spec.md 2.1 for b above 0."""
     return a // b if a >= 0 else -(-a // b)
 
 
@@ -29,7 +29,7 @@ def distance(a: Vector, b: Vector) -> int:
 
 @dataclass
 class Known:
-    """spec.md 5.5.3, by the names there; `count` is the number of K, `points` is P."""
+    """spec.md 5.5.3, by the names there; `count` is the number of K."""
 
     count: int
     mean: Vector
@@ -37,10 +37,10 @@ class Known:
     parallelogram: Vector
     relaxed: Vector
     length: int
-    activity: int = 0
-    surrounding: int = 0
-    spread: int = 0
-    points: int = 0
+    near_miss: int = 0
+    far_miss: int = 0
+    disagreement: int = 0
+    support: int = 0
     normal: Vector = field(default_factory=lambda: [0, 0, 0])
 
 
@@ -63,13 +63,13 @@ class Surroundings:
             return Known(0, last, last, last, last, self.length)
         pairs = [(b, w) for b in known for w in self.graph.neighbours[b] if x[w] is not None]
         mean = floor_mean([x[b] for b in known])
-        activity = sum(self.miss[b] for b in known) // len(known)
-        wide_mean, surrounding = mean, 0
+        near_miss = sum(self.miss[b] for b in known) // len(known)
+        wide_mean, far_miss = mean, 0
         if pairs:
             wide_mean = floor_mean([x[w] for _, w in pairs])
-            surrounding = sum(self.miss[w] for _, w in pairs) // len(pairs)
+            far_miss = sum(self.miss[w] for _, w in pairs) // len(pairs)
             self.length = sum(distance(x[b], x[w]) for b, w in pairs) // len(pairs)
-        result = Known(len(known), mean, wide_mean, mean, mean, self.length, activity, surrounding)
+        result = Known(len(known), mean, wide_mean, mean, mean, self.length, near_miss, far_miss)
         self._add_parallelograms(v, known, result)
         result.relaxed = self._relaxed(v, result.parallelogram)
         return result
@@ -85,7 +85,7 @@ class Surroundings:
         return triples[:16]
 
     def _add_parallelograms(self, v: int, known: list[int], result: Known) -> None:
-        """`parallelogram`, `spread`, P and `normal` of 5.5.3."""
+        """`parallelogram`, `disagreement`, `support` and `normal` of 5.5.3."""
         triples = self._parallelograms(v, known)
         if not triples:
             return
@@ -97,12 +97,12 @@ class Surroundings:
             n = _normal([(p - r) // 16 for p, r in zip(x[a], x[c])], [(q - r) // 16 for q, r in zip(x[b], x[c])])
             sign = -1 if sum(map(mul, n, normal)) < 0 else 1
             normal = [p + sign * q for p, q in zip(normal, n)]
-        result.points = len(points)
+        result.support = min(len(points), 4)
         result.parallelogram = floor_mean(points)
         differences = sum(abs(p - q) for point in points for p, q in zip(point, result.parallelogram))
-        result.spread = differences // (3 * len(points))
+        result.disagreement = differences // (3 * len(points))
         size = isqrt(sum(map(mul, normal, normal)))
-        result.normal = [quotient(n * 1024, size) for n in normal] if size else normal
+        result.normal = [tdiv(n * 1024, size) for n in normal] if size else normal
 
     def _relaxed(self, v: int, parallelogram: Vector) -> Vector:
         """`relaxed` of 5.5.4.
@@ -174,5 +174,5 @@ def _normal(p: Vector, q: Vector) -> Vector:
     """A cross product, halved until no component is 2^15 or more in magnitude."""
     n = [p[1] * q[2] - p[2] * q[1], p[2] * q[0] - p[0] * q[2], p[0] * q[1] - p[1] * q[0]]
     while max(map(abs, n)) >= 2**15:
-        n = [quotient(component, 2) for component in n]
+        n = [tdiv(component, 2) for component in n]
     return n

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from .errors import require
-from .mixing import State, Table, decode_mixed, magnitude_class
+from .mixing import Table, decode_mixed, magnitude_class
 from .position_graph import PositionGraph
-from .position_prediction import Known, Surroundings, Vector, clamp, quotient
+from .position_prediction import Known, Surroundings, Vector, clamp, tdiv
 from .range_coder import BitModel, RangeDecoder, UnsignedModels
 
 
@@ -27,15 +27,15 @@ class Centre:
 class PositionDecoder:
     """Everything that learns in spec.md 5.5."""
 
-    def __init__(self, data: bytes, position_bits: int, position_step: int, position_slope: int) -> None:
-        self.decoder = RangeDecoder(data, rule=38)
+    def __init__(self, decoder: RangeDecoder, position_bits: int, position_step: int, position_slope: int) -> None:
+        self.decoder = decoder
         self.position_bits = position_bits
         self.position_step = position_step
         self.position_slope = position_slope
-        self.class_weights = [[32768, 0, 0] for _ in range(40)]
+        self.blend = [[32768, 0, 0] for _ in range(5)]
         self.tangent = 32768
-        self.states = Table(lambda key: State())
-        self.mixers = Table(lambda key: [16384, 16384, 16384, 16384, 0])
+        self.models = Table(lambda key: BitModel())
+        self.mixers = Table(lambda key: [16384, 16384, 16384, 0])
         self.signs = Table(lambda key: BitModel())
         self.rest = UnsignedModels()
 
@@ -45,21 +45,17 @@ class PositionDecoder:
         surroundings = Surroundings(graph, self.position_bits)
         grid = np.zeros((vertices, 3), np.int64)
         for v in graph.coding_order():
-            position, miss = self._vertex(surroundings.around(v))
+            position, miss = self.vertex(surroundings.around(v))
             grid[v] = position
             surroundings.x[v] = surroundings.last = [16 * coordinate for coordinate in position]
             surroundings.miss[v] = miss
-        self.decoder.finish()
         return grid
 
-    def _weights(self, known: Known) -> list[int]:
-        return self.class_weights[8 * min(known.points, 4) + min(known.count, 7)]
-
-    def _centre(self, known: Known) -> Centre:
+    def centre(self, known: Known) -> Centre:
         """spec.md 5.5.5, the centre."""
         if known.count == 0:
             return Centre(known.parallelogram, [])
-        weights = self._weights(known)
+        weights = self.blend[known.support]
         centre, differences = [], []
         for axis in range(3):
             origin = known.parallelogram[axis]
@@ -68,9 +64,9 @@ class PositionDecoder:
             centre.append(origin + (sum(w * d for w, d in zip(weights, f)) >> 16))
         return Centre(centre, differences)
 
-    def _vertex(self, known: Known) -> tuple[list[int], int]:
+    def vertex(self, known: Known) -> tuple[list[int], int]:
         """spec.md 5.5.5 to 5.5.7: the grid position of a vertex, and its miss."""
-        around = self._centre(known)
+        around = self.centre(known)
         centre = around.centre
         step = clamp(
             (self.position_step + ((self.position_slope * known.length) >> 12)) >> 4, 1, 2 ** (self.position_bits - 1)
@@ -86,9 +82,9 @@ class PositionDecoder:
                 along = self._along(known.normal, axes, offsets)
                 towards += (self.tangent * along) >> 16
             expected = clamp((towards + 8) >> 4, 0, 2**self.position_bits - 1)
-            before = [known.activity, *map(abs, offsets)][j] if j < 2 else (abs(offsets[0]) + abs(offsets[1])) // 2
+            axis_miss = [known.near_miss, *map(abs, offsets)][j] if j < 2 else (abs(offsets[0]) + abs(offsets[1])) // 2
             lean = known.relaxed[axis] - 16 * expected
-            grid[axis] = expected + step * self._residual(known, step, j, before, lean)
+            grid[axis] = expected + step * self._residual(known, step, j, axis_miss, lean)
             require(0 <= grid[axis] < 2**self.position_bits, 35, "a position off the grid")
             offsets.append(16 * grid[axis] - centre[axis])
         if known.count:
@@ -104,25 +100,23 @@ class PositionDecoder:
         s = 1 if t > 0 else -1
         return bounded(-s * (normal[axes[0]] * offsets[0] + normal[axes[1]] * offsets[1]) // abs(t))
 
-    def _residual(self, known: Known, step: int, j: int, before: int, lean: int) -> int:
+    def _residual(self, known: Known, step: int, j: int, axis_miss: int, lean: int) -> int:
         """The residual of 5.5.6."""
 
-        def length_class(x: int) -> int:
-            return min(magnitude_class(min(x // step, 2**20)), 23)
+        def size(x: int) -> int:
+            return min(magnitude_class(x // step), 23)
 
-        mixed = (known.activity + known.surrounding + before) // 3
         contexts = (
-            (1, length_class(mixed) if known.count else 23, j),
-            (2, length_class(before), j),
-            (3, length_class(known.spread), min(known.points, 4)),
-            (4, min(known.count, 7), min(known.points, 4)),
+            (0, size((known.near_miss + known.far_miss + axis_miss) // 3) if known.count else 23, j),
+            (1, size(known.disagreement), known.support),
+            (2, min(known.count, 7), known.support),
         )
 
         def mixed_bin(number: int) -> int:
-            kind = min(number, 5)
+            kind = min(number, 2)
             return decode_mixed(
                 self.decoder,
-                [self.states[(number, *context)] for context in contexts],
+                [self.models[(number, *context)] for context in contexts],
                 [256],
                 self.mixers[kind],
                 self.mixers[kind, j],
@@ -130,7 +124,7 @@ class PositionDecoder:
 
         if not mixed_bin(0):
             return 0
-        negative = self.signs[2 * length_class(abs(lean)) + (lean < 0)].decode(self.decoder)
+        negative = self.signs[size(abs(lean)), lean < 0].decode(self.decoder)
         magnitude = 1
         while magnitude < 15 and mixed_bin(magnitude):
             magnitude += 1
@@ -145,13 +139,13 @@ class PositionDecoder:
         unit = bounded(16 * step)
         if abs(t) > 307:
             error = bounded(o2 - ((self.tangent * along) >> 16))
-            change = quotient(error * along * 655, unit * unit + along * along)
+            change = tdiv(error * along * 655, unit * unit + along * along)
             self.tangent = clamp(self.tangent + change, -(2**17), 2**17)
-        weights = self._weights(known)
+        weights = self.blend[known.support]
         for axis in range(3):
             f = around.differences[axis]
             said = sum(w * d for w, d in zip(weights, f)) >> 16
             error = bounded(x[axis] - known.parallelogram[axis] - said)
             size = unit * unit + sum(d * d for d in f)
             for i in range(3):
-                weights[i] = clamp(weights[i] + quotient(error * f[i] * 655, size), -(2**18), 2**18)
+                weights[i] = clamp(weights[i] + tdiv(error * f[i] * 655, size), -(2**18), 2**18)

@@ -24,7 +24,11 @@ class RangeDecoder:
             raise StreamError(self.rule, "a range code ends too early")
         return byte
 
-    def bin_below(self, bound: int) -> int:
+    def bin(self, p: int) -> int:
+        """A bin that is 1 with the probability p / 65536."""
+        return self._bin_below((self.range >> 16) * p)
+
+    def _bin_below(self, bound: int) -> int:
         """A bin that is 1 if `code` is below the bound."""
         if self.code < bound:
             decoded = 1
@@ -42,50 +46,39 @@ class RangeDecoder:
         """raw(n): n bins of equal probability, most significant first."""
         value = 0
         for _ in range(bits):
-            value = value << 1 | self.bin_below(self.range >> 1)
+            value = value << 1 | self._bin_below(self.range >> 1)
         return value
 
     def finish(self) -> None:
-        """ "The end" of 7.1: the bytes are the only ones that say what was decoded."""
-        if self.position < len(self.data):
+        """ "The end" of 7.1. That the position is not more than 4 beyond the end was checked with each byte."""
+        beyond = self.position - len(self.data)
+        if beyond < 0:
             raise StreamError(self.rule, "bytes are left after a range code")
-        if self.position < len(self.data) + 4 and self.data[-1] == 0:
+        if beyond < 4 and self.data[-1] == 0:
             raise StreamError(self.rule, "a range code ends with a zero")
-        last = int.from_bytes((self.data + bytes(4))[self.position - 4 : self.position], "big")
-        low = (last - self.code) % 2**32
-        end = low + self.code
-        power = end & -end if end else 2**32
-        rounder = -(-low // (2 * power)) * 2 * power  # the first multiple of the next power
-        if self.code >= self.range or (end and rounder < low + self.range):
-            raise StreamError(self.rule, "a range code has another end than it should")
 
 
 class BitModel:
-    """spec.md 7.2: the probability that a bin is 1, from two estimates of different speed."""
+    """spec.md 7.2: the probability p that a bin is 1, in 1/65536, and the number n of bins it has seen."""
 
-    __slots__ = ("fast", "slow", "count")
+    __slots__ = ("p", "n")
 
     def __init__(self) -> None:
-        self.fast = 32768
-        self.slow = 32768
-        self.count = 0
-
-    def probability(self) -> int:
-        return min(max((self.fast + self.slow) >> 2, 8), 32760)
+        self.p = 32768
+        self.n = 0
 
     def decode(self, decoder: RangeDecoder) -> int:
-        decoded = decoder.bin_below((decoder.range >> 15) * self.probability())
-        young = 131072 // (2 * self.count + 3)
-        fast_rate = max(young, 4096)
-        slow_rate = max(young, 512)
-        if decoded:
-            self.fast += ((65535 - self.fast) * fast_rate) >> 16
-            self.slow += ((65535 - self.slow) * slow_rate) >> 16
-        else:
-            self.fast -= (self.fast * fast_rate) >> 16
-            self.slow -= (self.slow * slow_rate) >> 16
-        self.count = min(self.count + 1, 127)
+        decoded = decoder.bin(self.p)
+        self.update(decoded)
         return decoded
+
+    def update(self, decoded: int) -> None:
+        rate = 655360 // (10 * self.n + 16)
+        if decoded:
+            self.p += ((65535 - self.p) * rate) >> 16
+        else:
+            self.p -= (self.p * rate) >> 16
+        self.n = min(self.n + 1, 60)
 
 
 class UnsignedModels:

@@ -8,10 +8,11 @@ import scipy.sparse.linalg
 
 from .errors import StreamError, require
 from .group import CodedFrame, PlaneRows
+from .handles import Blend
 from .harmonics import Harmonics
 from .residuals import CORRECTION, DETAIL, DISPLACEMENT, MOTION
 from .sequence_header import SequenceHeader
-from .shape import Edges, edge_weights, laplacian
+from .shape import Edges, edge_weights, laplacian, uneven_edges
 from .vertices import Mesh
 
 
@@ -39,63 +40,66 @@ def deformation_gradients(channels: np.ndarray) -> np.ndarray:
     return rotations(channels[:, :3]) @ stretch
 
 
-def plane_fields(
-    vertices: int,
-    bases: Sequence[Harmonics],
-    rows: Sequence[tuple[int, int]],
-    coefficients: np.ndarray,
-    units: np.ndarray,
-) -> np.ndarray:
-    """f of spec.md 6.5.1: values [vertices, channels] from the coefficients of `rows`, pairs (c, k); `units` are unit_c."""
+def fields(
+    bases: Sequence[np.ndarray], rows: Sequence[tuple[int, int]], coefficients: np.ndarray, units: np.ndarray
+) -> list[np.ndarray]:
+    """f of spec.md 6.5.1 of each component or patch: values [.., channels] at what its basis [.., l_c] is given at.
+
+    `rows` are the pairs (c, k) of the rows of `coefficients`; `units` are unit_c.
+    """
     place = {pair: row for row, pair in enumerate(rows)}
-    fields = np.zeros((vertices, coefficients.shape[1]))
+    result = []
     for c, basis in enumerate(bases):
-        n, count = basis.vectors.shape
-        own = coefficients[[place[c, k] for k in range(count)]]
-        fields[basis.begin : basis.begin + n] = basis.vectors @ (own * units[c])
-    return fields
+        own = coefficients[[place[c, k] for k in range(basis.shape[1])]]
+        result.append(basis @ (own * units[c]))
+    return result
 
 
-class PoissonSystem:
-    """spec.md 6.5.3 for one reference shape y [n, 3].
+class BlendSystem:
+    """spec.md 6.5.3 for one component and its reference shape y [n_c, 3].
 
-    Setting the gradient of the sum over edges to 0 gives, with the Laplacian of the weights on y,
-    (L x)_a = sum over edges (a, b) of w_ab (J_a + J_b) / 2 (y_a - y_b). x is determined but for a translation of each
-    component; so each component's first vertex is held, and its mean moved to where it belongs.
+    x = Psi z, and the rows of z are numbered as the text says. Setting the gradient of the sum to 0 gives, with J_a the
+    blend of the handles' J at vertex a, S z = Psi^T p + r J: p_a is the sum over edges (a, b) of w_ab (J_a + J_b) / 2
+    (y_a - y_b), and r J adds to the rows of the first kind the columns of the handles' J. z is determined but for a
+    translation; so the first handle is held, and the mean moved to where it belongs.
     """
 
-    def __init__(self, mesh: Mesh, edges: Edges, masses: np.ndarray, reference: np.ndarray) -> None:
-        self.mesh, self.edges, self.masses, self.reference = mesh, edges, masses, reference
-        self.weights = edge_weights(edges, mesh.triangles, reference)
-        self.free = np.setdiff1d(np.arange(len(reference)), mesh.components[:-1])
+    def __init__(
+        self, blend: Blend, ends: np.ndarray, weights: np.ndarray, masses: np.ndarray, reference: np.ndarray
+    ) -> None:
+        """`ends` [e, 2] are the component's edges, `weights` [e] their uneven weights on y, `masses` [n_c] of M'0."""
+        self.blend, self.ends, self.weights, self.masses, self.reference = blend, ends, weights, masses, reference
+        s, self.r = blend.stiffness(laplacian(len(reference), ends, weights))
+        self.free = np.delete(np.arange(s.shape[0]), blend.translations()[0])
         self.solver = None
         if len(self.free):
-            matrix = laplacian(len(reference), edges.ends, self.weights)[self.free][:, self.free]
             try:
-                self.solver = scipy.sparse.linalg.splu(matrix.tocsc())
+                self.solver = scipy.sparse.linalg.splu(s[self.free][:, self.free].tocsc())
             except (RuntimeError, ValueError) as error:
                 raise StreamError(57, f"the system of a reference shape: {error}") from error
 
     def solve(self, gradients: np.ndarray) -> np.ndarray:
-        """x [n, 3] for the deformation gradients [n, 3, 3]."""
-        a, b = self.edges.ends.T
+        """z [functions, 3] for the deformation gradients [H, 3, 3]."""
+        a, b = self.ends.T
         y = self.reference
-        mean = (gradients[a] + gradients[b]) / 2
-        pull = self.weights[:, None] * np.einsum("eij,ej->ei", mean, y[a] - y[b])
-        right = np.zeros_like(y)
-        np.add.at(right, a, pull)
-        np.subtract.at(right, b, pull)
-        x = np.zeros_like(y)
+        blended = (self.blend.weights @ gradients.reshape(-1, 9)).reshape(-1, 3, 3)
+        pull = self.weights[:, None] * np.einsum("eij,ej->ei", (blended[a] + blended[b]) / 2, y[a] - y[b])
+        pulls = np.zeros_like(y)
+        np.add.at(pulls, a, pull)
+        np.subtract.at(pulls, b, pull)
+        right = self.blend.functions.T @ pulls
+        if self.r:
+            right.reshape(-1, 4, 3)[:, :3] += self.r * gradients.transpose(0, 2, 1)
+        z = np.zeros_like(right)
         if self.solver:
-            x[self.free] = self.solver.solve(right[self.free])
-        for begin, end in zip(self.mesh.components, self.mesh.components[1:]):
-            masses = self.masses[begin:end, None]
-            x[begin:end] += (masses * (y[begin:end] - x[begin:end])).sum(axis=0) / masses.sum()
-        return x
+            z[self.free] = self.solver.solve(right[self.free])
+        away = y - self.blend.functions @ z
+        z[self.blend.translations()] += self.masses @ away / self.masses.sum()
+        return z
 
 
 class Reconstruction:
-    """Makes the frames of a stream; what does not change from frame to frame is computed once."""
+    """Makes the frames of a segment; what does not change from frame to frame is computed once."""
 
     def __init__(
         self,
@@ -103,26 +107,25 @@ class Reconstruction:
         mesh: Mesh,
         edges: Edges,
         masses: np.ndarray,
+        blends: list[Blend],
         components: list[Harmonics],
         patches: list[Harmonics],
         rows: PlaneRows,
     ) -> None:
         self.header, self.mesh, self.edges, self.masses = header, mesh, edges, masses
-        self.components, self.patches, self.rows = components, patches, rows
+        self.blends, self.components, self.patches, self.rows = blends, components, patches, rows
         self.m0 = first_shape(header, mesh)
         self.centre = masses @ self.m0
-        self.of_m0: PoissonSystem | None = None
+        self.of_m0: list[BlendSystem] | None = None
         self.previous = self.m0  # x' of the frame before in the group
 
     def frame(self, coded: CodedFrame) -> np.ndarray:
         """spec.md 6.5: positions [n, 3] of a frame. A group's frames must come in display order."""
         header = self.header
-        from_m0 = header.reference_shape == 0 or coded.intra
-        reference = self.m0 if from_m0 else self.previous
-        x = reference
-        if np.any(coded.planes[MOTION].coefficients):
-            x = self._system(from_m0).solve(deformation_gradients(self._motion(coded)))
-        x = x + self._displacement(coded)
+        from_m0 = header.reference_shape == 0 or coded.is_intra
+        moved = [z + d for z, d in zip(self._motion(coded, from_m0), self._displacement(coded))]
+        x = np.concatenate([blend.functions @ z for blend, z in zip(self.blends, moved)])
+        x = x + self._at_vertices(coded)
         self.previous = x
         rigid = np.array(coded.rigid, np.float64)
         rotation = rotations(header.rotation_step * rigid[None, :3])[0]
@@ -132,37 +135,51 @@ class Reconstruction:
             require(bool(np.all(np.isfinite(positions.astype(np.float32)))), 57, "a position beyond binary32")
         return positions
 
-    def _system(self, from_m0: bool) -> PoissonSystem:
-        if not from_m0:
-            return PoissonSystem(self.mesh, self.edges, self.masses, self.previous)
-        if self.of_m0 is None:
-            self.of_m0 = PoissonSystem(self.mesh, self.edges, self.masses, self.m0)
-        return self.of_m0
+    def _motion(self, coded: CodedFrame, from_m0: bool) -> list[np.ndarray]:
+        """z of each component before the displacement plane: spec.md 6.5.3."""
+        reference = self.m0 if from_m0 else self.previous
+        coefficients = coded.planes[MOTION].coefficients
+        if not np.any(coefficients):
+            return [blend.at_rest(reference[blend.begin : blend.end]) for blend in self.blends]
+        at_handles = [part.vectors[blend.handles] for part, blend in zip(self.components, self.blends)]
+        units = self._units(self.header.motion_step, 1 / 4)
+        channels = fields(at_handles, self.rows.harmonics, coefficients, units)
+        return [
+            system.solve(deformation_gradients(own)) for system, own in zip(self._systems(from_m0, reference), channels)
+        ]
+
+    def _systems(self, from_m0: bool, reference: np.ndarray) -> list[BlendSystem]:
+        """The system of each component on the reference shape."""
+        if from_m0 and self.of_m0 is not None:
+            return self.of_m0
+        weights = edge_weights(self.edges, self.mesh.triangles, reference)
+        systems = []
+        for blend in self.blends:
+            begin, end = blend.begin, blend.end
+            ends, uneven = uneven_edges(self.edges, weights, self.mesh.grid, begin, end)
+            systems.append(BlendSystem(blend, ends, uneven, self.masses[begin:end], reference[begin:end]))
+        if from_m0:
+            self.of_m0 = systems
+        return systems
 
     def _units(self, step: float, power: float) -> np.ndarray:
         """step / 16 * (n / n_c)^power of each component: unit_c of spec.md 6.5.1."""
         return step / 16 * (self.header.vertices / np.diff(self.mesh.components)) ** power
 
-    def _motion(self, coded: CodedFrame) -> np.ndarray:
-        coefficients = coded.planes[MOTION].coefficients
-        units = self._units(self.header.motion_step, 1 / 4)
-        return plane_fields(self.header.vertices, self.components, self.rows.harmonics, coefficients, units)
+    def _displacement(self, coded: CodedFrame) -> list[np.ndarray]:
+        """What the displacement plane adds to z of each component, [functions, 3]."""
+        columns = [part.columns for part in self.components]
+        units = self._units(self.header.displacement_step, 1 / 2)
+        return fields(columns, self.rows.harmonics, coded.planes[DISPLACEMENT].coefficients, units)
 
-    def _displacement(self, coded: CodedFrame) -> np.ndarray:
-        """The sum of the displacement, detail and correction planes, [n, 3] in model units."""
+    def _at_vertices(self, coded: CodedFrame) -> np.ndarray:
+        """The sum of the detail and correction planes, [n, 3] in model units."""
         header, planes = self.header, coded.planes
-        total = plane_fields(
-            header.vertices,
-            self.components,
-            self.rows.harmonics,
-            planes[DISPLACEMENT].coefficients,
-            self._units(header.displacement_step, 1 / 2),
-        )
+        total = np.zeros((header.vertices, 3))
         if DETAIL in planes:
             units = header.detail_step / 16 / np.sqrt(np.diff(self.mesh.patches))
-            total += plane_fields(
-                header.vertices, self.patches, self.rows.patch_harmonics, planes[DETAIL].coefficients, units
-            )
+            vectors = [part.vectors for part in self.patches]
+            total += np.concatenate(fields(vectors, self.rows.patch_harmonics, planes[DETAIL].coefficients, units))
         if CORRECTION in planes:
             total += planes[CORRECTION].coefficients * (header.correction_step / 16)
         return total

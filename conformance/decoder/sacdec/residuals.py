@@ -6,38 +6,29 @@ from dataclasses import dataclass
 import numpy as np
 
 from .errors import require
-from .mixing import State, Table, decode_mixed, magnitude_class, magnitude_classes
+from .mixing import Table, decode_mixed, magnitude_class, magnitude_classes
 from .range_coder import BitModel, RangeDecoder
 
 MOTION, DISPLACEMENT, DETAIL, CORRECTION = range(4)
 CHANNELS = (9, 3, 3, 3)
 
-# spec.md 7.4.4: the first weights in 1/64, by plane (2 is detail and correction), kind (2 is 2 to 5) and L.
-_ANY = -1
+# spec.md 7.4.4: the first weights of the mixers, in 1/64, by plane (2 is detail and correction) and kind of bin.
 _FIRST_WEIGHTS = {
-    (0, 0, 0): (14, 16, 20, 25, 27, 30, 41, 37, -34, 18, 50, -40),
-    (0, 0, 1): (23, 22, 18, 9, 17, 32, 113, 26, 0, -6, 64, -74),
-    (0, 0, 2): (26, 21, -1, 6, 12, 66, 158, -3, 4, -11, 72, -73),
-    (0, 1, _ANY): (19, 14, 9, 15, 4, 14, -6, 16, 3, 8, 32, -32),
-    (0, 2, _ANY): (8, 2, -4, 14, 6, 18, -2, 16, 8, 4, 12, -55),
-    (1, 0, 0): (9, 7, 20, 12, 9, 15, 12, 19, -21, 10, 39, -11),
-    (1, 0, 1): (26, 12, 16, 14, 7, 17, 42, 13, 8, 3, 34, -22),
-    (1, 0, 2): (36, 11, 9, 12, 11, 27, 101, 3, 1, 6, 19, -34),
-    (1, 1, _ANY): (22, 14, 21, 8, 2, 7, -20, 20, -8, 2, 13, -30),
-    (1, 2, _ANY): (12, 9, 14, 6, -8, 1, -23, 26, -5, -7, 6, -42),
-    (2, 0, 0): (21, 21, 29, -12, -14, 8, 55, 38, 13, -6, 43, -53),
-    (2, 0, 1): (42, 13, 16, -7, -13, 11, 51, 7, 30, -11, 47, -55),
-    (2, 0, 2): (40, 22, 8, 2, -7, 5, 56, 2, 15, 13, 20, -13),
-    (2, 1, _ANY): (45, 27, 2, 5, 10, 1, 12, 8, 5, -1, 25, -11),
-    (2, 2, _ANY): (31, 16, 5, 5, -11, 5, -30, 13, 6, 1, 19, -17),
+    (0, 0): (23, 22, 18, 9, 17, 32, 113, 26, 0, -6, 64, -74),
+    (0, 1): (19, 14, 9, 15, 4, 14, -6, 16, 3, 8, 32, -32),
+    (0, 2): (8, 2, -4, 14, 6, 18, -2, 16, 8, 4, 12, -55),
+    (1, 0): (26, 12, 16, 14, 7, 17, 42, 13, 8, 3, 34, -22),
+    (1, 1): (22, 14, 21, 8, 2, 7, -20, 20, -8, 2, 13, -30),
+    (1, 2): (12, 9, 14, 6, -8, 1, -23, 26, -5, -7, 6, -42),
+    (2, 0): (42, 13, 16, -7, -13, 11, 51, 7, 30, -11, 47, -55),
+    (2, 1): (45, 27, 2, 5, 10, 1, 12, 8, 5, -1, 25, -11),
+    (2, 2): (31, 16, 5, 5, -11, 5, -30, 13, 6, 1, 19, -17),
 }
 
 
-def first_weights(plane: int, kind: int, level: int) -> list[int]:
-    """The fresh mixer of a plane, a kind of bin and L, in 1/65536."""
-    plane, kind = min(plane, 2), min(kind, 2)
-    weights = _FIRST_WEIGHTS.get((plane, kind, level)) or _FIRST_WEIGHTS[plane, kind, _ANY]
-    return [1024 * weight for weight in weights]
+def first_weights(plane: int, kind: int) -> list[int]:
+    """A fresh mixer of a plane and a kind of bin, in 1/65536."""
+    return [1024 * weight for weight in _FIRST_WEIGHTS[min(plane, 2), kind]]
 
 
 @dataclass
@@ -80,9 +71,9 @@ class PlaneDecoder:
         self.row_classes = row_classes.tolist()
         self.shape = (len(self.row_classes), CHANNELS[plane])
         self.recent = np.zeros(self.shape, np.int64)  # h of 7.4.3
-        self.states = Table(lambda key: State())
-        self.level_mixers = Table(lambda key: first_weights(plane, *key))
-        self.activity_mixers = Table(lambda key: first_weights(plane, key[0], 1))
+        self.models = Table(lambda key: BitModel())
+        self.depth_mixers = Table(lambda key: first_weights(plane, key[0]))
+        self.activity_mixers = Table(lambda key: first_weights(plane, key[0]))
         self.sign_mixers = Table(lambda key: [40 * 1024, 40 * 1024])
         self.escape = [BitModel() for _ in range(20)]
 
@@ -102,8 +93,7 @@ class FrameOfPlane:
     def __init__(self, models: PlaneDecoder, decoder: RangeDecoder, context: PlaneContext) -> None:
         self.models = models
         self.decoder = decoder
-        self.v = min(context.level, 4)
-        self.l = min(context.level, 2)
+        self.depth = min(context.level, 4)
         rows, channels = models.shape
         zero = np.zeros(models.shape, np.int64)
         step, h = context.step, models.recent
@@ -111,24 +101,24 @@ class FrameOfPlane:
         # With one reference, "all of these are of that one".
         frames = context.references
         a, b = (frames[0], frames[-1]) if frames else (PlaneFrame(zero, zero), PlaneFrame(zero, zero))
-        magnitudes = np.minimum(np.abs(a.residuals), 2**15) + np.minimum(np.abs(b.residuals), 2**15)
+        magnitudes = np.abs(a.residuals) + np.abs(b.residuals)
         around = 4 * magnitudes + 2 * (_shifted(magnitudes, -1) + _shifted(magnitudes, 1))
         recent = np.minimum(magnitude_classes(16 * h // step // 4), 19)
-        wide = magnitude_classes((16 * h + 4 * (_shifted(h, -1) + _shifted(h, 1))) // step)
-        spread = magnitude_classes(16 * np.minimum(np.abs(a.coefficients - b.coefficients), 2**26) // step)
-        bend = np.minimum(magnitude_classes(np.minimum(np.abs(context.bend), 2**30) // (2 * step)), 11)
-        bend_sign = np.where(bend > 0, np.sign(context.bend), 0)
+        recent_around = magnitude_classes((16 * h + 4 * (_shifted(h, -1) + _shifted(h, 1))) // step)
+        spread = magnitude_classes(16 * np.abs(a.coefficients - b.coefficients) // step)
+        bend_class = np.minimum(magnitude_classes(np.abs(context.bend) // (2 * step)), 11)
+        signed_bend = np.sign(context.bend) * np.minimum(bend_class, 8)
         reference_sign = np.sign(np.sign(a.residuals) + np.sign(b.residuals))
 
         self.quiet = (magnitudes == 0).tolist()
         self.around = around.tolist()
         self.recent = recent.tolist()
-        self.wide = wide.tolist()
+        self.recent_around = recent_around.tolist()
         self.spread = spread.tolist()
-        self.bend = bend.tolist()
-        self.bend_sign = bend_sign.tolist()
+        self.bend_class = bend_class.tolist()
+        self.signed_bend = signed_bend.tolist()
         self.reference_sign = reference_sign.tolist()
-        # r and M, with four rows of zeros before the first.
+        # r and m, with four rows of zeros before the first.
         self.r = [[0] * channels for _ in range(rows + 4)]
         self.m = [[0] * channels for _ in range(rows + 4)]
 
@@ -138,7 +128,7 @@ class FrameOfPlane:
             for j in range(channels):
                 value = self.residual(i, j)
                 self.r[i + 4][j] = value
-                self.m[i + 4][j] = min(abs(value), 2**15)
+                self.m[i + 4][j] = abs(value)
         return np.array(self.r[4:], np.int64).reshape(rows, channels)
 
     def residual(self, i: int, j: int) -> int:
@@ -149,27 +139,27 @@ class FrameOfPlane:
         before = 24 * sum(m[i + 4][:j]) // j if j else 0
         activity = min(magnitude_class((near + self.around[i][j] + before) // 2), 23)
         contexts = (
-            (1, self.recent[i][j], self.v, self.quiet[i][j]),
-            (2, min(magnitude_class(near // 3), 15), min(magnitude_class(before // 6), 13)),
-            (3, models.row_classes[i], j, self.v),
-            (4, min(i, 1023), self.l),
-            (5, j, self.v),
-            (6, min(i, 1023), j),
+            (0, self.recent[i][j], self.depth, self.quiet[i][j]),
+            (1, min(magnitude_class(near // 3), 15), min(magnitude_class(before // 6), 13)),
+            (2, models.row_classes[i], j, self.depth),
+            (3, min(i, 1023), self.depth),
+            (4, j, self.depth),
+            (5, min(i, 1023), j),
         )
         features = (
             256,
-            64 * self.wide[i][j] - 512,
+            64 * self.recent_around[i][j] - 512,
             64 * self.spread[i][j] - 512,
             64 * magnitude_class(near) - 256,
-            64 * self.bend[i][j] - 256,
-            128 * self.v - 256,
+            64 * self.bend_class[i][j] - 256,
+            128 * self.depth - 256,
         )
 
         def mixed_bin(number: int) -> int:
-            kind = min(number, 5)
-            states = [models.states[(number, *context)] for context in contexts]
-            first = models.level_mixers[kind, self.l]
-            return decode_mixed(decoder, states, features, first, models.activity_mixers[kind, activity])
+            kind = min(number, 2)
+            chosen = [models.models[(number, *context)] for context in contexts]
+            first = models.depth_mixers[kind, self.depth]
+            return decode_mixed(decoder, chosen, features, first, models.activity_mixers[kind, activity])
 
         if not mixed_bin(0):
             return 0
@@ -189,9 +179,9 @@ class FrameOfPlane:
         """The sign bin of 7.4.4."""
         above = self.r[i + 3][j]
         contexts = (
-            ("bend", self.bend_sign[i][j], min(self.bend[i][j], 8), self.v),
-            ("sign", self.reference_sign[i][j], (above > 0) - (above < 0), self.l),
+            ("bend", self.signed_bend[i][j], self.depth),
+            ("sign", self.reference_sign[i][j], (above > 0) - (above < 0), self.depth),
         )
-        states = [self.models.states[context] for context in contexts]
+        models = [self.models.models[context] for context in contexts]
         mixers = self.models.sign_mixers
-        return decode_mixed(self.decoder, states, (), mixers["V", self.v], mixers["plane"])
+        return decode_mixed(self.decoder, models, (), mixers["depth", self.depth], mixers["plane"])

@@ -8,7 +8,7 @@ from .byte_reader import ByteReader
 from .errors import require
 from .limits import Limits
 
-VERSION = (0, 8)
+VERSION = (0, 9)
 
 
 @dataclass(frozen=True)

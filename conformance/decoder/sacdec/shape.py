@@ -70,12 +70,24 @@ def inhomogeneity(x: np.ndarray, y: np.ndarray, z: np.ndarray) -> np.ndarray:
     return linear + quadratic + cubic
 
 
-def uneven_weights(ends: np.ndarray, weights: np.ndarray, grid: np.ndarray) -> np.ndarray:
-    """spec.md 6.4.2: the weights of edges within a component or patch that has the grid positions [n_c, 3]."""
+def unevenness(ends: np.ndarray, grid: np.ndarray) -> np.ndarray:
+    """1 + 0.1 q of spec.md 6.4.2 of edges [e, 2] within a component or patch that has the grid positions [n_c, 3]."""
     low = grid.min(axis=0)
     extent = max(int((grid.max(axis=0) - low).max()), 1)
     x, y, z = (((grid[ends[:, 0]] + grid[ends[:, 1]]) / 2 - low) / extent).T
-    return weights * (1 + 0.1 * inhomogeneity(x, y, z))
+    return 1 + 0.1 * inhomogeneity(x, y, z)
+
+
+def uneven_edges(
+    edges: Edges, weights: np.ndarray, grid: np.ndarray, begin: int, end: int
+) -> tuple[np.ndarray, np.ndarray]:
+    """The edges within a component or patch, the vertices from `begin` to `end` - 1, and their uneven weights (6.4.2).
+
+    The ends [e, 2] count from `begin`. `weights` are those of all `edges`, `grid` [n, 3] is of all vertices.
+    """
+    inside = np.all((edges.ends >= begin) & (edges.ends < end), axis=1)
+    ends = edges.ends[inside] - begin
+    return ends, weights[inside] * unevenness(ends, grid[begin:end])
 
 
 def laplacian(vertices: int, ends: np.ndarray, weights: np.ndarray) -> sp.csc_matrix:

@@ -5,6 +5,7 @@ import zlib
 
 import numpy as np
 
+from .segment import Segment
 from .stream import Clip
 
 
@@ -23,6 +24,8 @@ def summary(clip: Clip) -> dict:
         "triangles_crc32": words_crc32(mesh.triangles),
         "coefficients_crc32": f"{clip.coefficients_crc32:08x}",
     }
+    if len(clip.segments) > 1:
+        result["segments"] = [[segment.first_frame, len(segment.mesh.grid)] for segment in clip.segments]
     if any(clip.header.offset):
         result["offset"] = list(clip.header.offset)
     if mesh.uvs is not None:
@@ -39,7 +42,7 @@ def summary(clip: Clip) -> dict:
     return result
 
 
-def tolerance(clip: Clip, coordinates: np.ndarray) -> np.ndarray:
+def tolerance(segment: Segment, coordinates: np.ndarray) -> np.ndarray:
     """How far coordinates that were rounded to binary32 may be from this decoder's: spec.md 8."""
-    exact = max(1e-6 * max(clip.first_diagonal(), clip.header.cell), 1e-12 * np.abs(coordinates).max(initial=0))
+    exact = max(1e-6 * max(segment.first_diagonal(), segment.header.cell), 1e-12 * np.abs(coordinates).max(initial=0))
     return exact + 2.0**-24 * np.abs(coordinates)
