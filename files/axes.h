@@ -18,6 +18,8 @@ class AxisConversion {
   bool ParseUnits(const std::string& words);
 
   bool changes() const { return turn_ != 0 || scale_ != 1; }
+  // Whether what is converted has z up.
+  bool z_up() const { return turn_ > 0; }
   double scale() const { return scale_; }
 
   // Converts a point. Exact but for the scale.

@@ -9,28 +9,51 @@
 #include <sstream>
 #include <utility>
 
+#include "files/alembic/alembic_clip.h"
+#include "files/alembic/alembic_writer.h"
 #include "files/clip_offset.h"
+#include "files/gltf/gltf_clip.h"
+#include "files/gltf/gltf_writer.h"
 #include "files/mesh_file.h"
 #include "files/overwriting.h"
+#include "files/path.h"
+#include "files/usd_writer.h"
+#include "files/vat_writer.h"
 
 namespace sac {
 
-bool ClipOutput::IsClipName(const std::string& path) { return IsCacheName(path) || IsWritableMeshName(path); }
+namespace {
+
+bool IsSceneName(const std::string& path) {
+  return IsAlembicName(path) || IsGltfName(path) || IsUsdName(path) || IsVatName(path);
+}
+
+}  // namespace
+
+bool ClipOutput::IsClipName(const std::string& path) {
+  return IsCacheName(path) || IsSceneName(path) || IsWritableMeshName(path);
+}
+
+std::string ClipOutput::NameError(const std::string& path) {
+  return path +
+         ": not a clip by its name (.pc2, .mdd, .abc, .glb, .gltf, .usda, .vat, or a pattern of .obj, .ply or .off)";
+}
 
 Status ClipOutput::Open(const std::string& path, const Mesh& mesh, const Settings& settings,
                         std::unique_ptr<ClipOutput>& output) {
   if (!IsClipName(path)) {
-    return Status::InvalidArgument(path + ": not a clip by its name (.pc2, .mdd, or a pattern of .obj, .ply or .off)");
+    return Status::InvalidArgument(NameError(path));
   }
   auto opened = std::make_unique<ClipOutput>();
   opened->path_ = path;
-  opened->mesh_ = mesh;
+  opened->TakeMesh(mesh);
   opened->force_ = settings.force;
-  opened->normals_.emplace(mesh);
-  if (!mesh.normals.empty()) opened->mesh_.normal_triangles = opened->normals_->normal_triangles();
+  opened->obj_ = settings.obj;
   opened->offset_ = settings.offset;
   opened->precision_ = settings.precision;
-  if (IsCacheName(path)) {
+  if (IsSceneName(path)) {
+    SAC_RETURN_IF_ERROR(opened->OpenScene(settings));
+  } else if (IsCacheName(path)) {
     SAC_RETURN_IF_ERROR(
         CacheWriter::Open(path, mesh.positions.size(), settings.fps, settings.frame_count, opened->cache_));
   } else if (FramePattern::IsPattern(path)) {
@@ -43,12 +66,63 @@ Status ClipOutput::Open(const std::string& path, const Mesh& mesh, const Setting
   return Status::Ok();
 }
 
+void ClipOutput::TakeMesh(const Mesh& mesh) {
+  mesh_ = mesh;
+  normals_.emplace(mesh);
+  if (!mesh.normals.empty()) mesh_.normal_triangles = normals_->normal_triangles();
+}
+
+Status ClipOutput::BeginMesh(std::int64_t number, const Mesh& mesh) {
+  if (!pattern_) {
+    return Status::Unsupported(path_ + ": holds one mesh, and the mesh changes at frame " + std::to_string(number) +
+                               "; write a sequence of meshes, such as frame_%04d.obj, or the --frames of each mesh");
+  }
+  TakeMesh(mesh);
+  return Status::Ok();
+}
+
+Status ClipOutput::OpenScene(const Settings& settings) {
+  if (IsAlembicName(path_)) {
+    auto alembic = std::make_unique<AlembicWriter>();
+    SAC_RETURN_IF_ERROR(alembic->Open(path_, mesh_, {settings.fps, settings.offset}));
+    scene_ = std::move(alembic);
+    return Status::Ok();
+  }
+  if (IsVatName(path_)) {
+    auto vat = std::make_unique<VatWriter>();
+    SAC_RETURN_IF_ERROR(vat->Open(path_, mesh_, {settings.fps, settings.offset, settings.exr, settings.force}));
+    scene_ = std::move(vat);
+    return Status::Ok();
+  }
+  if (IsUsdName(path_)) {
+    auto usd = std::make_unique<UsdWriter>();
+    SAC_RETURN_IF_ERROR(usd->Open(path_, mesh_, {settings.fps, settings.offset, settings.z_up}));
+    scene_ = std::move(usd);
+    return Status::Ok();
+  }
+  GltfOutput output{settings.fps, settings.offset, GltfCompression::kNone};
+  if (settings.compression == Compression::kQuantized) output.compression = GltfCompression::kQuantized;
+  if (settings.compression == Compression::kMeshopt) output.compression = GltfCompression::kMeshopt;
+  auto writer = std::make_unique<GltfWriter>();
+  SAC_RETURN_IF_ERROR(writer->Open(path_, mesh_, output));
+  scene_ = std::move(writer);
+  return Status::Ok();
+}
+
 Status ClipOutput::WriteMeshFile(const std::string& path, const Positions& positions, bool named) {
   mesh_.positions = positions;
   mesh_.normals = normals_->Compute(positions);
   std::string bytes;
   Warnings warnings;
-  SAC_RETURN_IF_ERROR(FormatMesh(path, mesh_, offset_, bytes, warnings));
+  if (obj_ != nullptr && Extension(path) == ".obj") {
+    bytes = obj_->Format(positions, offset_);
+    // A normal of the text may serve several vertices, which turn each its own way.
+    if (!obj_->normals().empty() && pattern_) {
+      warnings.push_back(path + ": its normals are those of the mesh it was made onto, in every frame");
+    }
+  } else {
+    SAC_RETURN_IF_ERROR(FormatMesh(path, mesh_, offset_, bytes, warnings));
+  }
   if (!named && !force_) SAC_RETURN_IF_ERROR(CheckUnnamed(path, bytes));
   if (mesh_warnings_.empty()) mesh_warnings_ = std::move(warnings);
   OutputFile file;
@@ -64,6 +138,7 @@ Status ClipOutput::Write(std::int64_t number, const Positions& positions) {
     return Status::InvalidArgument(path_ + ": a frame of " + std::to_string(positions.size()) + " vertices, not " +
                                    std::to_string(mesh_.positions.size()));
   }
+  if (scene_) return scene_->Write(number, positions, normals_->Compute(positions));
   if (pattern_) {
     last_number_ = std::max(last_number_, number);
     return WriteMeshFile(pattern_->Path(number), positions, true);
@@ -99,6 +174,7 @@ Status ClipOutput::WriteToCache(std::int64_t number, const Positions& positions)
 }
 
 Warnings ClipOutput::warnings() const {
+  if (scene_) return scene_->warnings();
   Warnings warnings = mesh_warnings_;
   if (largest_rounding_ > precision_) {
     std::ostringstream text;
@@ -120,6 +196,7 @@ Warnings ClipOutput::StaleFrames() const {
 }
 
 Status ClipOutput::Commit() {
+  if (scene_) return scene_->Commit();
   if (mesh_files_.empty()) return Status::InvalidArgument(path_ + ": no frames");
   // The cache first: its last write may still find the disk full, the mesh files are closed.
   if (cache_) SAC_RETURN_IF_ERROR(cache_->Commit());

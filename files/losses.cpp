@@ -33,6 +33,13 @@ void Losses::List(std::string_view what, std::string_view name) {
   kind.listed.push_back(kind.listed.size() == kMostNames ? "..." : shown);
 }
 
+void Losses::Add(const Losses& other) {
+  for (const Kind& kind : other.kinds_) {
+    if (kind.names.empty()) Count(kind.what, kind.count);
+    for (const std::string& name : kind.names) kind.listed.empty() ? Name(kind.what, name) : List(kind.what, name);
+  }
+}
+
 std::string Losses::Text() const {
   std::string text;
   for (const Kind& kind : kinds_) {

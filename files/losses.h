@@ -21,6 +21,9 @@ class Losses {
   // As Name, but the names themselves are listed.
   void List(std::string_view what, std::string_view name);
 
+  // All of another's.
+  void Add(const Losses& other);
+
   // "groups (2), vertex properties (quality, flags)"; empty where nothing is lost.
   std::string Text() const;
 

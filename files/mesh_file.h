@@ -48,6 +48,9 @@ struct ReadSettings {
 // kCorrupt and kUnsupported: its content.
 Status ReadMeshFile(const std::string& path, const ReadSettings& settings, MeshFile& file);
 
+// The bytes of a file. kIoError; kInvalidArgument for an empty one. Messages do not name the file.
+Status ReadFileBytes(const std::string& path, std::string& bytes);
+
 // The mesh of ReadMeshFile alone.
 Status ReadMesh(const std::string& path, Mesh& mesh);
 

@@ -16,9 +16,8 @@
 #include "files/welding.h"
 
 namespace sac {
-namespace {
 
-Status ReadBytes(const std::string& path, std::string& bytes) {
+Status ReadFileBytes(const std::string& path, std::string& bytes) {
   std::error_code error;
   if (std::filesystem::is_directory(path, error)) return Status::IoError("is a directory");
   std::FILE* file = std::fopen(path.c_str(), "rb");
@@ -30,6 +29,8 @@ Status ReadBytes(const std::string& path, std::string& bytes) {
   if (read_error != 0) return Status::IoError(std::strerror(read_error));
   return bytes.empty() ? Status::InvalidArgument("the file is empty") : Status::Ok();
 }
+
+namespace {
 
 Status Parse(const std::string& extension, std::string& bytes, PolygonMesh& parsed) {
   if (extension == ".stl") return ParseStl(bytes, parsed);
@@ -51,7 +52,7 @@ Status ReadUnnamed(const std::string& path, const ReadSettings& settings, MeshFi
     return Status::InvalidArgument("not a mesh file by its name (.obj, .ply, .off, .stl, .om)");
   }
   std::string bytes;
-  SAC_RETURN_IF_ERROR(ReadBytes(path, bytes));
+  SAC_RETURN_IF_ERROR(ReadFileBytes(path, bytes));
   const std::string extension = Extension(path);
   PolygonMesh parsed;
   SAC_RETURN_IF_ERROR(Parse(extension, bytes, parsed));

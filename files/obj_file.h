@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <string>
 #include <string_view>
 
@@ -19,6 +20,10 @@ namespace sac {
 // Parses the text of an OBJ file, normalized (NormalizeText): v (with an optional colour: r g b, or r g b a), vt, vn,
 // f. Other statements are counted as losses. Messages are of the form "line 12: ..." and do not name the file.
 Status ParseObj(std::string_view text, PolygonMesh& parsed);
+
+// Takes a statement off the text: one line, or several joined by a backslash at the end. Adds the lines to
+// `line_count`.
+std::string_view TakeObjStatement(std::string_view& text, std::size_t& line_count);
 
 // The text of an OBJ file. Positions are written with `offset` added, model units. Every number is written with the
 // digits that bring back the identical float32, and coordinates that the offset has moved the identical double.

@@ -220,8 +220,10 @@ Status ObjParser::Finish() {
   return Status::Ok();
 }
 
-// A statement: one line, or several joined by a backslash at the end. A comment may end in one too (a path, say).
-std::string_view TakeStatement(std::string_view& text, std::size_t& line_count) {
+}  // namespace
+
+// A comment may end in a backslash, too (a path, say).
+std::string_view TakeObjStatement(std::string_view& text, std::size_t& line_count) {
   const char* begin = text.data();
   std::string_view line;
   do {
@@ -231,15 +233,13 @@ std::string_view TakeStatement(std::string_view& text, std::size_t& line_count) 
   return {begin, static_cast<std::size_t>(line.data() + line.size() - begin)};
 }
 
-}  // namespace
-
 Status ParseObj(std::string_view text, PolygonMesh& parsed) {
   parsed = {};
   ObjParser parser(parsed);
   std::size_t line_count = 0;
   while (!text.empty()) {
     const std::size_t line = line_count + 1;
-    std::string_view statement = TakeStatement(text, line_count);
+    std::string_view statement = TakeObjStatement(text, line_count);
     const std::string_view keyword = TakeWord(statement);
     if (keyword.empty() || keyword.front() == '#') continue;
     if (Status status = parser.ParseStatement(keyword, statement, line); !status.ok()) {

@@ -12,6 +12,7 @@
 
 #include "files/cache_file.h"
 #include "files/frame_sequence.h"
+#include "files/vat_writer.h"
 
 namespace sac {
 namespace {
@@ -42,7 +43,8 @@ std::vector<std::string> FilesOfInput(const std::vector<std::string>& arguments)
   return arguments.size() == 1 ? Expand(arguments.front()) : arguments;
 }
 
-std::vector<std::string> FilesOfOutput(const std::string& path) {
+std::vector<std::string> FilesOfOutput(const std::string& path, bool exr) {
+  if (IsVatName(path)) return FilesOfVat(path, exr);
   if (IsCacheName(path)) return {path, std::filesystem::path(path).replace_extension(".obj").string()};
   return Expand(path);
 }

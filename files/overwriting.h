@@ -11,8 +11,9 @@ namespace sac {
 // The files of a clip, as named for ClipInput: a pattern stands for those that exist.
 std::vector<std::string> FilesOfInput(const std::vector<std::string>& arguments);
 
-// The files of a clip, as named for ClipOutput: a cache has a mesh beside it.
-std::vector<std::string> FilesOfOutput(const std::string& path);
+// The files of a clip, as named for ClipOutput: a cache has a mesh beside it, a vertex animation texture its textures,
+// `exr` or PNG.
+std::vector<std::string> FilesOfOutput(const std::string& path, bool exr = false);
 
 // kInvalidArgument if one of `outputs` is one of `inputs`, or two outputs are one, by whatever names and links. Devices
 // and pipes may be shared; `-`, once each for input and output, is no file.

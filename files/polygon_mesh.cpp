@@ -114,6 +114,17 @@ std::vector<std::array<std::uint8_t, 4>> RoundColors(const std::vector<std::arra
   return bytes;
 }
 
+void TakePositions(PolygonMesh& parsed, MeshFile& file) {
+  file.mesh.positions.clear();
+  file.mesh.positions.reserve(parsed.positions.size());
+  for (const Vec3d& p : parsed.positions) {
+    file.mesh.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
+  }
+  file.exact.clear();
+  if (parsed.wide) file.exact = std::move(parsed.positions);
+  file.not_finite = std::move(parsed.not_finite);
+}
+
 Status FinishMesh(PolygonMesh& parsed, const ReadSettings& settings, MeshFile& file) {
   SAC_RETURN_IF_ERROR(CheckFaces(parsed));
   Triangulation cut;
@@ -134,15 +145,10 @@ Status FinishMesh(PolygonMesh& parsed, const ReadSettings& settings, MeshFile& f
   if (settings.weld && settings.first == nullptr) TellLooseParts(parsed.positions, mesh.triangles, file.warnings);
   file.warnings.insert(file.warnings.end(), parsed.warnings.begin(), parsed.warnings.end());
 
-  mesh.positions.reserve(parsed.positions.size());
-  for (const Vec3d& p : parsed.positions) {
-    mesh.positions.push_back({static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2])});
-  }
-  if (parsed.wide) file.exact = std::move(parsed.positions);
+  TakePositions(parsed, file);
   mesh.colors = std::move(parsed.colors);
   file.faces = std::move(parsed.faces);
   file.corners = std::move(cut.corners);
-  file.not_finite = std::move(parsed.not_finite);
   return Status::Ok();
 }
 

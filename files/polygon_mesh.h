@@ -60,6 +60,9 @@ void PolygonMesh::AddPosition(const Vec3d& position, Where where) {
 // beyond is clamped and counted, too. A negative alpha means that a vertex has no colour; it becomes white.
 std::vector<std::array<std::uint8_t, 4>> RoundColors(const std::vector<std::array<float, 4>>& colors, Losses& losses);
 
+// Moves the positions of what was parsed, and where one is not finite, into `file`, and leaves the rest of it alone.
+void TakePositions(PolygonMesh& parsed, MeshFile& file);
+
 // Makes `file` of what was parsed: triangulates the faces, or, if `settings.first` has the same faces, takes its
 // triangles; stores texture coordinates once each, and normals per vertex where the corners of a vertex agree. `parsed`
 // is consumed. kCorrupt if a face names a vertex that there is not.

@@ -173,8 +173,12 @@ TEST_F(ClipOutputTest, Errors) {
     const std::string message = ClipOutput::Open(directory_.Path(name), mesh_, {}, output_).message();
     return message.empty() ? "" : message.substr(directory_.Path("").size());
   };
-  EXPECT_EQ(open("a.txt"), "a.txt: not a clip by its name (.pc2, .mdd, or a pattern of .obj, .ply or .off)");
-  EXPECT_EQ(open("-"), "-: not a clip by its name (.pc2, .mdd, or a pattern of .obj, .ply or .off)");
+  EXPECT_EQ(
+      open("a.txt"),
+      "a.txt: not a clip by its name (.pc2, .mdd, .abc, .glb, .gltf, .usda, .vat, or a pattern of .obj, .ply or .off)");
+  EXPECT_EQ(
+      open("-"),
+      "-: not a clip by its name (.pc2, .mdd, .abc, .glb, .gltf, .usda, .vat, or a pattern of .obj, .ply or .off)");
   EXPECT_EQ(open("%d%d.obj"), "%d%d.obj: more than one frame number");
   EXPECT_EQ(open("none/a.pc2"), "none/a.pc2: No such file or directory");
   ASSERT_EQ(open("a.pc2"), "");
