@@ -20,7 +20,12 @@ Command AddDecodeCommand(CLI::App& app);
 Command AddInfoCommand(CLI::App& app);
 Command AddVerifyCommand(CLI::App& app);
 Command AddCompareCommand(CLI::App& app);
+Command AddComponentsCommand(CLI::App& app);
+Command AddPoseCommand(CLI::App& app);
 Command AddSynthCommand(CLI::App& app);
+Command AddPlayCommand(CLI::App& app);
 Command AddSweepCommand(CLI::App& app);
+Command AddThinCommand(CLI::App& app);
+Command AddReferenceCommand(CLI::App& app);
 
 }  // namespace sac

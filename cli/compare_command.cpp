@@ -23,26 +23,39 @@ Status Measure(const CompareOptions& options, ClipInput& original, DistortionMet
   // Far coordinates are compared in double: both are relative to the same point.
   ClipInputSettings settings;
   settings.offset = original.offset();
+  settings.segments = true;
   SAC_RETURN_IF_ERROR(ClipInput::Open(options.decoded, decoded, settings));
   const auto differ = [&](const char* what, std::size_t a, std::size_t b) {
     return Status::InvalidArgument(options.decoded.front() + ": " + std::to_string(b) + " " + what + ", but " +
                                    options.original.front() + " has " + std::to_string(a));
   };
-  const std::size_t vertices = original.mesh().positions.size();
-  if (decoded->mesh().positions.size() != vertices) {
-    return differ("vertices", vertices, decoded->mesh().positions.size());
+  if (const std::size_t a = original.mesh().positions.size(), b = decoded->mesh().positions.size(); a != b) {
+    return differ("vertices", a, b);
   }
   const std::uint32_t frames = *original.frame_count();
   if (decoded->frame_count() != frames) {
     return differ("frames", frames, *decoded->frame_count());
   }
   Progress progress(frames);
-  ErrorMeter meter(original.mesh().triangles, vertices);
+  ErrorMeter meter(original.mesh().triangles, original.mesh().positions.size());
   Positions a, b;
-  bool end = false;
   for (std::uint32_t f = 0; f < frames; ++f) {
-    SAC_RETURN_IF_ERROR(original.Next(a, end));
-    SAC_RETURN_IF_ERROR(decoded->Next(b, end));
+    bool ends = false, decoded_ends = false;
+    SAC_RETURN_IF_ERROR(original.Next(a, ends));
+    if (ends) {
+      SAC_RETURN_IF_ERROR(original.NextSegment(ends));
+      meter.BeginMesh(original.mesh().triangles, original.mesh().positions.size());
+      SAC_RETURN_IF_ERROR(original.Next(a, ends));
+    }
+    SAC_RETURN_IF_ERROR(decoded->Next(b, decoded_ends));
+    if (decoded_ends) {
+      SAC_RETURN_IF_ERROR(decoded->NextSegment(decoded_ends));
+      SAC_RETURN_IF_ERROR(decoded->Next(b, decoded_ends));
+    }
+    if (a.size() != b.size()) {
+      return Status::InvalidArgument(decoded->name_of(f) + ": " + std::to_string(b.size()) + " vertices, but " +
+                                     original.name_of(f) + " has " + std::to_string(a.size()));
+    }
     meter.Add(a, b);
     progress.FramesDone(f + 1);
   }
@@ -52,10 +65,12 @@ Status Measure(const CompareOptions& options, ClipInput& original, DistortionMet
 
 Status Compare(const CompareOptions& options) {
   std::unique_ptr<ClipInput> original;
-  SAC_RETURN_IF_ERROR(ClipInput::Open(options.original, original));
+  ClipInputSettings settings;
+  settings.segments = true;
+  SAC_RETURN_IF_ERROR(ClipInput::Open(options.original, original, settings));
+  const std::size_t vertices = original->mesh().positions.size();
   DistortionMetrics metrics;
   SAC_RETURN_IF_ERROR(Measure(options, *original, metrics));
-  const std::size_t vertices = original->mesh().positions.size();
   if (options.json) {
     Json json;
     AddDistortion(metrics, json);

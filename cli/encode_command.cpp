@@ -2,11 +2,15 @@
 #include <unistd.h>
 
 #include <chrono>
+#include <cstdint>
 #include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <sstream>
 #include <string>
 #include <utility>
 #include <vector>
@@ -18,6 +22,7 @@
 #include "cli/number_option.h"
 #include "cli/progress.h"
 #include "cli/warning_report.h"
+#include "files/alembic/alembic_clip.h"
 #include "files/cache_file.h"
 #include "files/clip_input.h"
 #include "files/frame_rate.h"
@@ -33,6 +38,7 @@ namespace {
 
 constexpr double kLeastTarget = 1e-6, kLargestTarget = 1e6;
 constexpr double kLeastStep = 1e-9, kLargestStep = 1e9;
+constexpr std::uint32_t kMostReferenceRounds = 16;
 
 struct EncodeOptions {
   std::vector<std::string> inputs;  // as for ClipInput
@@ -43,8 +49,24 @@ struct EncodeOptions {
   std::optional<double> quality;
   std::string reference = "key";
   std::string gaps = "error";
+  std::string up_axis;           // x, y or z; empty: not said
+  std::string json_file;         // of the author; empty: none
+  std::string animation, scene;  // of a file that holds several
   bool json = false, strict = false, skip_damage = false;
 };
+
+// Reads what the options say of the clip into the encoder's metadata.
+Status TakeMetadata(EncodeOptions& options) {
+  Metadata& metadata = options.encoding.encoder.metadata;
+  if (!options.up_axis.empty()) metadata.up_axis = static_cast<std::uint8_t>(options.up_axis[0] - 'x');
+  if (options.json_file.empty()) return Status::Ok();
+  std::ifstream file(options.json_file, std::ios::binary);
+  std::ostringstream text;
+  if (!file || !(text << file.rdbuf())) return Status::IoError(options.json_file + ": cannot be read");
+  if (!nlohmann::json::accept(text.str())) return Status::InvalidArgument(options.json_file + ": not JSON");
+  metadata.json = text.str();
+  return Status::Ok();
+}
 
 Status CheckOptions(EncodeOptions& options) {
   EncoderSettings& encoder = options.encoding.encoder;
@@ -54,7 +76,7 @@ Status CheckOptions(EncodeOptions& options) {
   if (options.output.empty()) return Status::InvalidArgument("--output: no name");
   if (options.order_map == "-") return Status::InvalidArgument("--order-map: must be a file");
   for (const std::string& path : {options.output, options.order_map}) {
-    if (IsReadableMeshName(path) || IsCacheName(path)) {
+    if (IsReadableMeshName(path) || IsCacheName(path) || IsAlembicName(path)) {
       return Status::InvalidArgument(path + ": a mesh or a cache by its name, not a .sac stream or an order map");
     }
   }
@@ -72,6 +94,7 @@ Status CheckOptions(EncodeOptions& options) {
     }
   }
   if (options.quality) encoder.quality = *options.quality;
+  SAC_RETURN_IF_ERROR(TakeMetadata(options));
   if (options.reference == "previous") encoder.reference_shape = ReferenceShape::kPrevious;
   std::vector<std::string> outputs{options.output};
   if (!options.order_map.empty()) outputs.push_back(options.order_map);
@@ -101,11 +124,16 @@ Status EncodeFiles(const EncodeOptions& options, EncodedClip& encoded, Warnings&
   ClipInputSettings reading;
   reading.gaps = options.gaps == "hold" ? Gaps::kHold : options.gaps == "skip" ? Gaps::kSkip : Gaps::kError;
   reading.skip_damage = options.skip_damage;
+  reading.rate = {options.encoding.encoder.frame_rate_numerator, options.encoding.encoder.frame_rate_denominator};
+  reading.animation = options.animation;
+  reading.scene = options.scene;
+  reading.segments = true;
   SAC_RETURN_IF_ERROR(ClipInput::Open(options.inputs, input, reading));
   if (options.strict) SAC_RETURN_IF_ERROR(TellWarnings(input->warnings(), true));  // better now than after the encoding
   ClipEncoding encoding = options.encoding;
   encoding.encoder.offset = input->offset();
   SAC_RETURN_IF_ERROR(TakeMaxError(options, input->mesh(), encoding.encoder));
+  const double diagonal = BoundingBox(input->mesh().positions).diagonal();
   // A stream that ends early is worth more than none, but not more than the file that is there.
   std::error_code ignored;
   const bool keeps_part =
@@ -125,13 +153,13 @@ Status EncodeFiles(const EncodeOptions& options, EncodedClip& encoded, Warnings&
   if (!coded.ok() && (encoded.frames == 0 || !keeps_part)) return coded;
   warnings = input->warnings();
   if (coded.ok()) {
-    const double diagonal = BoundingBox(input->mesh().positions).diagonal();
     for (std::string& line : EncodingWarnings(input->name(), encoding, encoded, diagonal)) {
       warnings.push_back(std::move(line));
     }
   }
   if (options.strict) SAC_RETURN_IF_ERROR(TellWarnings(warnings, true));
   if (!options.order_map.empty()) {
+    if (encoded.segments > 1) return AtInput(options, "the mesh changes: --keep-order keeps the order of each mesh");
     SAC_RETURN_IF_ERROR(order_map.Write(FormatOrderMap(encoded.order)));
     SAC_RETURN_IF_ERROR(order_map.Close());  // the disk may be full
   }
@@ -169,8 +197,10 @@ void AddFrameRate(CLI::App& app, EncoderSettings& encoder) {
     encoder.frame_rate_denominator = rate.denominator;
     return true;
   };
-  app.add_option("--fps", parse,
-                 "frames a second: 24, 30000/1001, or 29.97, which is 30000/1001 [that of the input, if it has one]")
+  app.add_option(
+         "--fps", parse,
+         "frames a second: 24, 30000/1001, or 29.97, which is 30000/1001; scenes are sampled at it [that of the input, "
+         "if it has one]")
       ->option_text("RATE");
 }
 
@@ -179,7 +209,7 @@ void AddFiles(CLI::App& app, EncodeOptions& o) {
          "INPUT", o.inputs,
          "a mesh and its point cache (mesh.obj clip.pc2, mesh.ply clip.mdd), or meshes, one for each frame, or a "
          "pattern of them (frame_%04d.obj, frame_####.obj, frame_$F4.obj, or 'frame_*.obj' in quotes), or their "
-         "directory; .obj, .ply, .off, .stl, .om")
+         "directory; .obj, .ply, .off, .stl, .om; or a scene whose meshes become one: .glb, .gltf, .abc")
       ->required()
       ->option_text("...");
   app.add_option("-o,--output", o.output, "the stream to write; - is standard output")->required()->option_text("FILE");
@@ -194,6 +224,10 @@ void AddFiles(CLI::App& app, EncodeOptions& o) {
   app.add_option("--order-map", o.order_map, "write the order of the vertices to a file, for decode --order-map")
       ->option_text("FILE");
   AddFrameRate(app, o.encoding.encoder);
+  app.add_option("--animation", o.animation, "the animation of a .glb or .gltf to take, by name or number [the first]")
+      ->option_text("NAME");
+  app.add_option("--scene", o.scene, "the scene of a .glb or .gltf to take, by name or number [the one it shows]")
+      ->option_text("NAME");
 }
 
 void AddTargets(CLI::App& app, EncodeOptions& o) {
@@ -212,17 +246,17 @@ void AddTargets(CLI::App& app, EncodeOptions& o) {
 void AddSteps(CLI::App& app, EncoderSettings& encoder) {
   AddNumber(app, "--harmonics", encoder.harmonics, 1u, Limits{}.expert.harmonics,
             "manifold harmonics over all components; time and memory grow with them [from the quality]");
-  AddNumber(app, "--samples-per-harmonic", encoder.samples_per_harmonic, 0u, 64u,
-            "radial functions for each harmonic, from which the basis is computed; 0 for exact harmonics, which start "
-            "slowly [2]");
+  AddNumber(app, "--handles-per-harmonic", encoder.handles_per_harmonic, 0u, 64u,
+            "handles for each harmonic, which the mesh follows, but no more than 800 unless that is below one; 0 for "
+            "every vertex a handle, which is slow [2]");
   AddNumber(app, "--motion-step", encoder.motion_step, kLeastStep, kLargestStep,
             "quantizer step of rotation and stretch, in radians and strain [from the quality]");
   AddNumber(app, "--displacement-step", encoder.displacement_step, kLeastStep, kLargestStep,
-            "quantizer step of displacement, as a fraction of the first frame's RMS radius [from the quality]");
+            "quantizer step of displacement, as a fraction of the mesh's RMS radius [from the quality]");
   AddNumber(app, "--detail-step", encoder.detail_step, 0.0, kLargestStep,
             "quantizer step of local detail, as a fraction of the RMS radius; 0 for none [from the quality]");
   AddNumber(app, "--position-bits", encoder.position_bits, 1.0, 24.0,
-            "log2 of the first frame's extent in steps, at edges of median length; may be a fraction [from the "
+            "log2 of the mesh's extent in steps, at edges of median length; may be a fraction [from the "
             "quality]");
 }
 
@@ -234,19 +268,47 @@ void AddStructure(CLI::App& app, EncodeOptions& o) {
                                    "frames of a hierarchy of B-frames; 1 for P-frames only [16]");
   app.add_flag("--low-delay", encoder.low_delay, "P-frames only, each written as soon as it is read: for live streams")
       ->excludes(pyramid);
-  app.add_option("--reference", o.reference,
-                 "what motion is measured against: key, the first frame, or previous, the frame before [key]")
+  app.add_option(
+         "--reference", o.reference,
+         "what motion is measured against: key, one shape near the first frame, or previous, the frame before [key]")
       ->check(CLI::IsMember(std::vector<std::string>{"key", "previous"}))
       ->option_text("SHAPE");
+  AddNumber(
+      app, "--reference-rounds", o.encoding.reference_rounds, 0u, kMostReferenceRounds,
+      "fit that shape to all frames in N rounds, and use it where the clip costs less; encoding takes 2 to 3 times "
+      "as long, with targets N trials more; 0 for the first frame, as with --max-error, --low-delay and "
+      "--reference previous [2, with --unchecked 0]");
   app.add_flag("!--no-index", encoder.index,
                "leave out the index of groups, with which a stream of several groups ends; players seek by it");
+  AddNumber(
+      app, "--base-levels", encoder.base_levels, 0u, 32u,
+      "code groups in layers that sac thin can drop: N levels of the pyramid in the first, then the others one by "
+      "one, then detail; 0 for no layers [0]");
   AddNumber(app, "--repeat-start", encoder.repeat_start, 0u, 0xffffffffu,
             "write header and first frame again before every N groups, for those who join in the middle [never]");
 }
 
+void AddMetadata(CLI::App& app, EncodeOptions& o) {
+  Metadata& metadata = o.encoding.encoder.metadata;
+  app.add_option("--name", metadata.name, "what the clip is called, for those who read the stream")
+      ->option_text("TEXT");
+  app.add_option("--metadata", o.json_file, "a JSON file to be carried in the stream")->option_text("FILE");
+  AddNumber(app, "--metres-per-unit", metadata.metres_per_unit, kLeastStep, kLargestStep, "the length of a model unit");
+  app.add_option("--up-axis", o.up_axis, "the axis that points up: x, y or z")
+      ->check(CLI::IsMember(std::vector<std::string>{"x", "y", "z"}))
+      ->option_text("AXIS");
+  AddNumber(app, "--first-frame", metadata.first_frame, std::int32_t{-2147483647}, std::int32_t{2147483647},
+            "the author's number of the first frame");
+  app.add_flag_callback(
+      "--loop", [&metadata] { metadata.loops = true; }, "say that the clip is made to be looped");
+  app.add_flag("--bounds", o.encoding.encoder.bounds,
+               "say where the clip and each group are, at the end of the stream");
+}
+
 void AddReport(CLI::App& app, EncodeOptions& o) {
   app.add_flag("!--unchecked", o.encoding.measure,
-               "neither decode nor measure what is written; takes half the time, and tells nothing of errors");
+               "neither decode nor measure what is written, nor fit the reference shape; takes a fifth of the time, "
+               "and tells nothing of errors");
   AddStrict(app, o.strict);
   app.add_flag("--json", o.json, "report sizes in bytes, distortion, settings and warnings as one JSON object");
 }
@@ -261,6 +323,7 @@ Command AddEncodeCommand(CLI::App& app) {
   AddTargets(*command, *options);
   AddSteps(*command, options->encoding.encoder);
   AddStructure(*command, *options);
+  AddMetadata(*command, *options);
   AddReport(*command, *options);
   command->footer(
       "The report goes to standard output, or to standard error if the stream goes there. Without --keep-order or\n"

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "rate_control/reference_shape.h"
+
 namespace sac {
 namespace {
 
@@ -33,9 +35,11 @@ Json EncodingJson(const ClipEncoding& encoding, const EncodedClip& encoded, cons
   json["bpvf"] = encoded.bpvf();
   if (encoding.measure) AddDistortion(encoded.distortion, json);
   json["frames"] = encoded.frames;
+  json["segments"] = encoded.segments;
   json["vertices"] = info.vertices;
   json["triangles"] = info.triangles;
   json["harmonics"] = info.harmonics;
+  json["fitted_reference"] = encoded.fitted_reference;
   json["seconds"] = seconds;
   if (encoding.targets.any()) json["trials"] = encoded.trials;
   json["warnings"] = warnings;
@@ -47,11 +51,12 @@ Json EncodingJson(const ClipEncoding& encoding, const EncodedClip& encoded, cons
   settings["quality"] = encoder.quality;
   settings["fps"] = info.frame_rate_numerator == 0 ? Json() : Json(RateText(info));
   settings["harmonics"] = or_null(encoder.harmonics);  // null: from the quality
-  settings["samples_per_harmonic"] = encoder.samples_per_harmonic;
+  settings["handles_per_harmonic"] = encoder.handles_per_harmonic;
   settings["group"] = encoder.group;
   settings["pyramid"] = encoder.low_delay ? 1 : encoder.pyramid;
   settings["low_delay"] = encoder.low_delay;
   settings["reference"] = encoder.reference_shape == ReferenceShape::kPrevious ? "previous" : "key";
+  settings["reference_rounds"] = RoundsOf(encoding);
   settings["motion_step"] = or_null(encoder.motion_step);
   settings["displacement_step"] = or_null(encoder.displacement_step);
   settings["detail_step"] = or_null(encoder.detail_step);
@@ -64,15 +69,20 @@ Json EncodingJson(const ClipEncoding& encoding, const EncodedClip& encoded, cons
 void PrintEncoding(const ClipEncoding& encoding, const EncodedClip& encoded, double seconds, std::FILE* file) {
   const StreamInfo& info = encoded.info;
   const auto bytes = static_cast<double>(encoded.bytes);
-  const double raw = 12 * static_cast<double>(info.vertices) * static_cast<double>(encoded.frames);
-  std::fprintf(file, "%u frames, %u vertices, %u triangles\n", encoded.frames, info.vertices, info.triangles);
+  const double raw = 12 * static_cast<double>(encoded.positions);
+  if (encoded.segments > 1) {
+    std::fprintf(file, "%u frames of %u meshes, %.0f vertices in the mean\n", encoded.frames, encoded.segments,
+                 static_cast<double>(encoded.positions) / encoded.frames);
+  } else {
+    std::fprintf(file, "%u frames, %u vertices, %u triangles\n", encoded.frames, info.vertices, info.triangles);
+  }
   std::fprintf(file, "%.0f bytes, 1 : %.1f of raw float32, %.4g bits a vertex and frame\n", bytes, raw / bytes,
                encoded.bpvf());
   for (const auto& [part, size] : Parts(encoded.parts)) {
     std::fprintf(file, "  %-12s %10lld bytes %5.1f %%\n", part, size, 100 * static_cast<double>(size) / bytes);
   }
   if (encoding.measure) PrintDistortion(encoded.distortion, file);
-  if (encoded.trials > 0) {
+  if (encoding.targets.any()) {
     const EncoderSettings& s = encoded.settings;
     std::fprintf(
         file,

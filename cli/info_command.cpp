@@ -63,6 +63,31 @@ void PrintHeader(const SequenceHeader& header) {
   });
 }
 
+// What a stream says of its clip, as far as it does.
+Json Describe(const Metadata& metadata) {
+  Json json = Json::object();
+  if (!metadata.name.empty()) json["name"] = metadata.name;
+  if (metadata.metres_per_unit) json["metres_per_unit"] = *metadata.metres_per_unit;
+  if (metadata.up_axis) json["up_axis"] = std::string(1, static_cast<char>('x' + *metadata.up_axis));
+  if (metadata.first_frame) json["first_frame"] = *metadata.first_frame;
+  if (metadata.loops) json["loops"] = *metadata.loops;
+  if (!metadata.json.empty()) {
+    const Json parsed = Json::parse(metadata.json, nullptr, false);
+    json["author"] = parsed.is_discarded() ? Json(metadata.json) : parsed;
+  }
+  if (metadata.bounds) json["bounds"] = {metadata.bounds->low, metadata.bounds->high};
+  return json;
+}
+
+// Text of a stranger as one line that moves no cursor.
+std::string Printable(const std::string& text) {
+  std::string out = text;
+  for (char& c : out) {
+    if (static_cast<unsigned char>(c) < 32 || c == 127) c = ' ';
+  }
+  return out;
+}
+
 void PrintText(const std::string& name, const StreamSummary& summary) {
   std::printf("%s: %llu bytes\n", name.c_str(), static_cast<unsigned long long>(summary.bytes));
   if (summary.header) PrintHeader(*summary.header);
@@ -75,12 +100,21 @@ void PrintText(const std::string& name, const StreamSummary& summary) {
   }
   std::printf("%-24s %llu\n", "frames", static_cast<unsigned long long>(summary.frames));
   std::printf("%-24s %zu\n", "groups", GroupCount(summary));
+  if (summary.segments > 1) std::printf("%-24s %u\n", "segments", summary.segments);
   std::printf("%-24s %s\n", "index", summary.has_index ? "yes" : "no");
+  const Json metadata = Describe(summary.metadata);
+  for (auto entry = metadata.begin(); entry != metadata.end(); ++entry) {
+    const Json& value = entry.value();
+    const std::string text = value.is_string() ? value.get<std::string>() : JsonLine(value);
+    std::printf("%-24s %s\n", entry.key().c_str(), Printable(text).c_str());
+  }
   if (const auto seconds = Duration(summary)) std::printf("%-24s %.6g seconds\n", "duration", *seconds);
   for (const PacketSummary& packet : summary.packets) {
     std::printf("packet %-8s %10llu bytes", NameOf(packet.type), static_cast<unsigned long long>(packet.bytes));
     if (packet.type == PacketType::kGroup) {
       std::printf(" %6u frames%s", packet.frames, packet.low_delay ? ", low delay" : "");
+      if (packet.layers > 0) std::printf(", %u layers", packet.layers);
+      if (summary.segments > 1) std::printf(", segment %u", packet.segment);
     }
     std::printf("\n");
   }
@@ -108,7 +142,9 @@ Json ToJson(const StreamSummary& summary, const Status& status) {
   }
   json["frames"] = summary.frames;
   json["groups"] = GroupCount(summary);
+  json["segments"] = summary.segments;
   json["index"] = summary.has_index;
+  if (!summary.metadata.empty()) json["metadata"] = Describe(summary.metadata);
   const auto seconds = Duration(summary);
   json["duration"] = seconds ? Json(*seconds) : Json();
   json["packets"] = Json::array();
@@ -119,6 +155,8 @@ Json ToJson(const StreamSummary& summary, const Status& status) {
     if (packet.type != PacketType::kGroup) continue;
     entry["frames"] = packet.frames;
     entry["low_delay"] = packet.low_delay;
+    entry["layers"] = packet.layers;
+    entry["segment"] = packet.segment;
   }
   return json;
 }

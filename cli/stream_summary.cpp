@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "cli/stream_summary.h"
 
+#include <algorithm>
 #include <span>
 
 #include "codec/draco_mesh.h"
-#include "format/group_syntax.h"
+#include "format/group.h"
 #include "format/i_frame_syntax.h"
+#include "format/metadata.h"
+#include "format/range_coder.h"
 #include "format/stream_index.h"
 #include "sac/limits.h"
 
@@ -14,7 +17,8 @@ namespace {
 
 Status TakeIFrame(std::span<const std::uint8_t> payload, StreamSummary& summary) {
   IFrameSyntax syntax;
-  SAC_RETURN_IF_ERROR(ParseIFrame(payload, *summary.header, syntax));
+  RangeDecoder positions({});
+  SAC_RETURN_IF_ERROR(ParseIFrame(payload, *summary.header, syntax, positions));
   DracoMesh mesh;  // holds the texture coordinates, if any; much quicker than harmonics
   SAC_RETURN_IF_ERROR(DecodeDraco(syntax.mesh, *summary.header, mesh));
   summary.i_frame = {syntax.harmonics.size(), !mesh.uv_triangles.empty(), syntax.has_normals, syntax.has_colors,
@@ -43,6 +47,9 @@ Status Take(const Packet& packet, PacketSummary& line, StreamSummary& summary) {
       if (!summary.i_frame) return Status::Corrupt("a group before the I-frame");
       SAC_RETURN_IF_ERROR(ParseGroup(packet.payload, group, code));
       line.low_delay = group.open();
+      line.layers = group.layered() ? 1 : 0;
+      line.segment = group.segment;
+      summary.segments = std::max(summary.segments, group.segment + 1);
       line.frames = group.frames;
       summary.frames += line.frames;
       return Status::Ok();
@@ -60,10 +67,15 @@ Status Take(const Packet& packet, PacketSummary& line, StreamSummary& summary) {
       line.frames = 1;
       ++summary.frames;
       return Status::Ok();
-    case PacketType::kGroupEnd:
+    case PacketType::kLayer:
+      return summary.i_frame ? Status::Ok() : Status::Corrupt("a layer before the I-frame");
+    case PacketType::kMetadata:
+      // Nothing depends on it: what is malformed is left out.
+      (void)ParseMetadata(packet.payload, summary.metadata).ok();
+      return Status::Ok();
+    default:
       return Status::Ok();
   }
-  return Status::Corrupt("unknown packet");
 }
 
 }  // namespace
@@ -84,12 +96,14 @@ Status Summarize(StreamInput& input, StreamSummary& summary) {
     PacketSummary line{packet->type, reader.position() - begin};
     begin = reader.position();
     if (const Status s = Take(*packet, line, summary); !s.ok()) return at(s);
-    if (packet->type != PacketType::kFrame && packet->type != PacketType::kGroupEnd) {
+    const bool is_layer = packet->type == PacketType::kLayer;
+    if (!is_layer && packet->type != PacketType::kFrame && packet->type != PacketType::kGroupEnd) {
       summary.packets.push_back(line);
       continue;
     }
-    summary.packets.back().bytes += line.bytes;  // of the open group
+    summary.packets.back().bytes += line.bytes;  // of the group
     summary.packets.back().frames += line.frames;
+    if (is_layer) ++summary.packets.back().layers;
   }
   if (summary.ended) return Status::Ok();
   return at(Truncated(summary.bytes, summary.frames));
@@ -102,13 +116,19 @@ const char* NameOf(PacketType type) {
     case PacketType::kIFrame:
       return "i_frame";
     case PacketType::kGroup:
+    case PacketType::kLayer:
     case PacketType::kFrame:
     case PacketType::kGroupEnd:
       return "group";
     case PacketType::kEnd:
       return "end";
+    case PacketType::kMetadata:
+      return "metadata";
+    case PacketType::kSource:
+      return "source";
+    default:
+      return "other";
   }
-  return "unknown";
 }
 
 }  // namespace sac

@@ -28,8 +28,7 @@ Status CheckOptions(SynthOptions& options) {
     return Status::InvalidArgument("--vertices: a " + options.kind + " has " + std::to_string(least) + " or more");
   }
   if (!ClipOutput::IsClipName(options.output)) {
-    return Status::InvalidArgument(options.output +
-                                   ": not a clip by its name (.pc2, .mdd, or a pattern of .obj, .ply or .off)");
+    return Status::InvalidArgument(ClipOutput::NameError(options.output));
   }
   return Status::Ok();
 }
@@ -59,7 +58,7 @@ Command AddSynthCommand(CLI::App& app) {
       ->required()
       ->check(CLI::IsMember(std::vector<std::string>(kSynthKindNames.begin(), kSynthKindNames.end())))
       ->option_text(" ");
-  command->add_option("-o,--output", options->output, "clip.pc2, clip.mdd or a pattern, as for decode")
+  command->add_option("-o,--output", options->output, "clip.pc2, clip.mdd, clip.abc or a pattern, as for decode")
       ->required()
       ->option_text("OUT");
   command->add_flag("--force", options->force, "replace a mesh that is there beside the cache to write");

@@ -74,6 +74,26 @@ TEST_F(DecodeTest, MapGivesWhatTheKeptOrderGives) {
   EXPECT_NE(Read("loose.obj"), Read("kept.obj"));
 }
 
+TEST_F(DecodeTest, OntoGivesWhatTheKeptOrderGives) {
+  Encode("kept.sac", {"--keep-order"});
+  Encode("loose.sac");
+  Good({"decode", "kept.sac", "-o", "kept.pc2"});
+  Good({"decode", "loose.sac", "-o", "onto.pc2", "--onto", "in.obj"});
+  EXPECT_EQ(Read("onto.pc2"), Read("kept.pc2"));
+  EXPECT_EQ(Load("onto.obj").triangles, Load("in.obj").triangles);
+  Good({"decode", "loose.sac", "-o", "up.pc2", "--onto", "in.obj", "--up", "y:z"});
+  Good({"decode", "kept.sac", "-o", "kept_up.pc2", "--up", "y:z"});
+  EXPECT_EQ(Read("up.pc2"), Read("kept_up.pc2"));
+  Good({"decode", "loose.sac", "-o", "later.ply", "--onto", "in.obj", "--frames", "7"});
+  Good({"decode", "kept.sac", "-o", "kept_7.ply", "--frames", "7"});
+  EXPECT_EQ(Load("later.ply").positions, Load("kept_7.ply").positions);
+  Good({"synth", "flag", "-o", "other.pc2", "--vertices", "300", "--frames", "1"});
+  const Outcome outcome = Sac({"decode", "loose.sac", "-o", "x.pc2", "--onto", "other.obj"});
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.err.find("other.obj: it has "), std::string::npos) << outcome.err;
+  EXPECT_FALSE(std::filesystem::exists(Path("x.pc2")));
+}
+
 TEST_F(DecodeTest, TrianglesAndCornersFollowTheVertices) {
   Encode("clip.sac", {"--keep-order"});
   Good({"decode", "clip.sac", "-o", "out.pc2"});

@@ -91,7 +91,7 @@ TEST_F(EncodeTest, OptionsReachTheEncoder) {
                                                                                       {"--motion-step", "0.2"},
                                                                                       {"--displacement-step", "0.01"},
                                                                                       {"--position-bits", "7"},
-                                                                                      {"--samples-per-harmonic", "3"},
+                                                                                      {"--handles-per-harmonic", "0"},
                                                                                       {"--low-delay"},
                                                                                       {"--keep-order"}}) {
     std::vector<std::string> arguments{"encode", "in.obj", "in.pc2", "-o", "other.sac"};
@@ -138,13 +138,14 @@ TEST_F(EncodeTest, SearchesForTargets) {
   const std::string report = Encode("size.sac", {"--target-bpvf", "8"});
   EXPECT_NE(report.find("\nfound in "), std::string::npos) << report;
   EXPECT_NE(report.find(" trials: --motion-step "), std::string::npos) << report;
-  const nlohmann::json size = EncodeJson("size.sac", {"--target-bpvf", "8"});
+  const nlohmann::json size = EncodeJson("size.sac", {"--target-bpvf", "8", "--reference-rounds", "0"});
   EXPECT_LE(size["bpvf"], 8);
   EXPECT_GE(size["bpvf"], 0.97 * 8);
-  // The report's settings give the same stream.
+  // The report's settings give the same stream, if the shape does not depend on where the search began.
   const nlohmann::json& s = size["settings"];
   Encode("again.sac", {"--motion-step", s["motion_step"].dump(), "--displacement-step", s["displacement_step"].dump(),
-                       "--detail-step", s["detail_step"].dump(), "--position-bits", s["position_bits"].dump()});
+                       "--detail-step", s["detail_step"].dump(), "--position-bits", s["position_bits"].dump(),
+                       "--reference-rounds", "0"});
   EXPECT_EQ(Read("again.sac"), Read("size.sac"));
   for (const std::vector<std::string>& targets : std::vector<std::vector<std::string>>{
            {"--target-kg", "1", "--target-bpvf", "0.1"}, {"--target-bpvf", "0.01"}, {"--target-sted", "1e-6"}}) {
@@ -155,6 +156,21 @@ TEST_F(EncodeTest, SearchesForTargets) {
     EXPECT_EQ(outcome.err.rfind("sac: in.obj: the target", 0), 0u) << outcome.err;
     EXPECT_FALSE(std::filesystem::exists(Path("none.sac")));
   }
+}
+
+TEST_F(EncodeTest, FitsTheReferenceShape) {
+  const nlohmann::json first = EncodeJson("first.sac", {"--reference-rounds", "0"});
+  EXPECT_EQ(first["fitted_reference"], false);
+  EXPECT_EQ(first["settings"]["reference_rounds"], 0);
+  const nlohmann::json report = EncodeJson("clip.sac", {});
+  EXPECT_EQ(report["settings"]["reference_rounds"], 2);
+  EXPECT_EQ(report["bytes"], Read("clip.sac").size());
+  EXPECT_EQ(report["fitted_reference"], Read("clip.sac") != Read("first.sac"));
+  Good({"verify", "clip.sac"});
+  EncodeJson("unchecked.sac", {"--unchecked"});
+  EXPECT_EQ(Read("unchecked.sac"), Read("first.sac"));
+  ExpectFailure({"encode", "in.obj", "in.pc2", "-o", "x.sac", "--reference-rounds", "17"}, 2,
+                "--reference-rounds: '17' is not a whole number from 0 to 16 (see sac encode --help)");
 }
 
 TEST_F(EncodeTest, WritesToStandardOutput) {
@@ -180,7 +196,7 @@ TEST_F(EncodeTest, LowDelay) {
   for (const nlohmann::json& packet : info["packets"]) bytes += packet["bytes"].get<std::uint64_t>();
   EXPECT_EQ(bytes, Read("clip.sac").size());
   EXPECT_NE(Good({"info", "clip.sac"}).find("2 frames, low delay\n"), std::string::npos);
-  Encode("whole.sac", {"--pyramid", "1"});
+  Encode("whole.sac", {"--pyramid", "1", "--reference-rounds", "0"});  // low delay has the first frame
   EXPECT_EQ(GoodJson({"info", "whole.sac", "--json"})["packets"][2]["low_delay"], false);
   Good({"decode", "clip.sac", "-o", "clip.pc2"});
   Good({"decode", "whole.sac", "-o", "whole.pc2"});

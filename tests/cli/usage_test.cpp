@@ -14,7 +14,7 @@ class UsageTest : public SacCommandOnClip {};
 TEST_F(UsageTest, HelpAndVersion) {
   EXPECT_EQ(Good({"--version"}).rfind("sac ", 0), 0u);
   EXPECT_NE(Good({"--help"}).find("compare"), std::string::npos);
-  for (const char* command : {"encode", "decode", "info", "verify", "compare", "synth"}) {
+  for (const char* command : {"encode", "decode", "info", "verify", "compare", "components", "pose", "synth"}) {
     EXPECT_NE(Good({command, "--help"}).find(std::string("  sac ") + command), std::string::npos) << command;
   }
   const Outcome full = Shell(Quote(SAC_EXECUTABLE) + " --help 2>&1 > /dev/full");
@@ -68,10 +68,12 @@ TEST_F(UsageTest, ErrorsOfTheCommandLine) {
                 "--vertices: a walker has 2000 or more (see sac synth --help)");
   ExpectFailure(
       {"synth", "flag", "-o", "x.stl"}, 2,
-      "x.stl: not a clip by its name (.pc2, .mdd, or a pattern of .obj, .ply or .off) (see sac synth --help)");
+      "x.stl: not a clip by its name (.pc2, .mdd, .abc, .glb, .gltf, .usda, .vat, or a pattern of .obj, .ply or .off) "
+      "(see sac synth --help)");
   ExpectFailure(
       {"decode", "clip.sac", "-o", "x.sac"}, 2,
-      "x.sac: not a clip by its name (.pc2, .mdd, or a pattern of .obj, .ply or .off) (see sac decode --help)");
+      "x.sac: not a clip by its name (.pc2, .mdd, .abc, .glb, .gltf, .usda, .vat, or a pattern of .obj, .ply or .off) "
+      "(see sac decode --help)");
   for (const char* word : {":", "5:5", "7:3", "-1", "1:2:3", "a", "4294967295", ""}) {
     ExpectFailure({"decode", "clip.sac", "-o", "x.pc2", "--frames", word}, 2,
                   std::string("--frames: '") + word + "' is no range of frames such as 10:20 (see sac decode --help)");
@@ -112,7 +114,7 @@ TEST_F(UsageTest, ProgressIsForTerminals) {
   std::string shown;
   for (char letter = 0; read(terminal, &letter, 1) == 1 && letter != '|';) shown += letter;
   ASSERT_GT(shown.size(), 2u);
-  EXPECT_NE(shown.find("\rframe 1 / 12"), std::string::npos) << shown;
+  EXPECT_NE(shown.find("\rtrial 1, frame 1 / 12"), std::string::npos) << shown;
   EXPECT_EQ(shown.back(), '\r');
   EXPECT_EQ(shown[shown.size() - 2], ' ');
   EXPECT_EQ(shown.find('\n'), std::string::npos);
