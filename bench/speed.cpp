@@ -15,7 +15,6 @@
 #include "format/i_frame_syntax.h"
 #include "format/packet.h"
 #include "format/sequence_header.h"
-#include "geometry/poisson_system.h"
 #include "sac/decoder.h"
 #include "sac/encoder.h"
 #include "sac/status.h"
@@ -48,7 +47,7 @@ struct StreamStart {
     Require(packets.Read(bytes, packet));
     Require(ParseSequenceHeader(packet.value().payload, {}, header));
     Require(packets.Read(bytes, packet));
-    Require(ParseIFrame(packet.value().payload, header, syntax));
+    Require(ReadIFrame(packet.value().payload, header, syntax));
     DecodeMesh();
   }
 
@@ -60,7 +59,7 @@ struct StreamStart {
 
   Shape MakeShape() const {
     Shape shape;
-    Require(BuildShape(header, decoded.mesh, syntax.harmonics, syntax.samples_per_harmonic, {}, shape));
+    Require(BuildShape(header, decoded.mesh, syntax.harmonics, syntax.handles_per_harmonic, {}, shape));
     return shape;
   }
 };
@@ -79,7 +78,7 @@ void StartDecoder(benchmark::State& state) {
   CountVertices(state, coded);
 }
 
-// The steps of that time: mesh, harmonics, factorization.
+// The steps of that time: the mesh, and what frames are reconstructed with.
 void StartMesh(benchmark::State& state) {
   const CodedClip& coded = WalkerClip(Vertices(state));
   StreamStart start(coded);
@@ -87,21 +86,10 @@ void StartMesh(benchmark::State& state) {
   CountVertices(state, coded);
 }
 
-void StartHarmonics(benchmark::State& state) {
+void StartShape(benchmark::State& state) {
   const CodedClip& coded = WalkerClip(Vertices(state));
   const StreamStart start(coded);
   for ([[maybe_unused]] auto step : state) benchmark::DoNotOptimize(start.MakeShape());
-  CountVertices(state, coded);
-}
-
-void StartFactorization(benchmark::State& state) {
-  const CodedClip& coded = WalkerClip(Vertices(state));
-  const StreamStart start(coded);
-  const Shape shape = start.MakeShape();
-  for ([[maybe_unused]] auto step : state) {
-    PoissonSystem poisson(shape.edges, shape.components, shape.masses);
-    if (!poisson.SetReference(shape.positions, shape.weights)) state.SkipWithError("singular");
-  }
   CountVertices(state, coded);
 }
 
@@ -206,8 +194,7 @@ void Sizes(benchmark::internal::Benchmark* b) { b->Arg(2000)->Arg(10000)->Arg(40
 
 BENCHMARK(StartDecoder)->Apply(Sizes);
 BENCHMARK(StartMesh)->Apply(Sizes);
-BENCHMARK(StartHarmonics)->Apply(Sizes);
-BENCHMARK(StartFactorization)->Apply(Sizes);
+BENCHMARK(StartShape)->Apply(Sizes);
 BENCHMARK(DecodeFrames)->Apply(Sizes);
 BENCHMARK(SeekAnywhere)->Apply(Sizes);
 BENCHMARK(SeekInGroup)->Apply(Sizes);

@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# cmake --install: libraries, public headers, a CMake package (find_package(sac COMPONENTS decoder encoder shared)) and
-# two pkg-config files: sac for C, which is the shared library where there is one, and sac-cxx for C++.
+# cmake --install: libraries, public headers, a CMake package (find_package(sac COMPONENTS decoder encoder decomposition
+# shared)) and two pkg-config files: sac for C, which is the shared library where there is one, and sac-cxx for C++.
 include(CMakePackageConfigHelpers)
 # Those who want the libraries without the command: cmake --install BUILD --component sac_library
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME sac_library)
@@ -28,8 +28,20 @@ if(SAC_BUILD_ENCODER)
   set_target_properties(sac_rate_control PROPERTIES EXPORT_NAME encoder)
   set_target_properties(sac_encoder PROPERTIES EXPORT_NAME stream_encoder)
 endif()
+if(SAC_BUILD_DECOMPOSITION)
+  sac_install(decomposition sac_decomposition)
+  list(PREPEND static_libraries sac_decomposition)
+endif()
 if(SAC_BUILD_SHARED)
-  sac_install(shared sac_shared)
+  # Debian's packages keep what programs load apart from what is needed to link them.
+  set(runtime sac_library)
+  if(SAC_PACKAGES)
+    set(runtime sac_runtime)
+  endif()
+  set_target_properties(sac_shared PROPERTIES EXPORT_NAME shared)
+  install(TARGETS sac_shared EXPORT sac-shared RUNTIME COMPONENT ${runtime}
+    LIBRARY COMPONENT ${runtime} NAMELINK_COMPONENT sac_library ARCHIVE COMPONENT sac_library)
+  install(EXPORT sac-shared NAMESPACE sac:: FILE sac-shared.cmake DESTINATION ${package})
 endif()
 
 configure_package_config_file(cmake/sac-config.cmake.in sac-config.cmake INSTALL_DESTINATION ${package})

@@ -5,7 +5,7 @@
 set(sources codec/decode/c_api.cpp)
 set(libraries sac_decoder sac_codec sac_geometry sac_format)
 if(SAC_BUILD_ENCODER)
-  list(APPEND sources codec/encode/c_api.cpp rate_control/c_api.cpp)
+  list(APPEND sources codec/encode/c_api.cpp metrics/c_api.cpp rate_control/c_api.cpp)
   list(PREPEND libraries sac_rate_control sac_metrics sac_encoder)
 endif()
 add_library(sac_shared SHARED ${sources})
@@ -16,6 +16,12 @@ target_include_directories(sac_shared INTERFACE
   $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/include> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
 set_target_properties(sac_shared PROPERTIES
   OUTPUT_NAME sac VERSION ${PROJECT_VERSION} SOVERSION ${PROJECT_VERSION_MAJOR}.${PROJECT_VERSION_MINOR})
+if(SAC_STANDALONE)
+  # Before the shared Draco that the libraries name; what is found twice is taken from the first.
+  find_library(static_draco NAMES libdraco.a REQUIRED)
+  target_link_options(sac_shared PRIVATE -static-libstdc++ -static-libgcc LINKER:--as-needed,--strip-all)
+  target_link_libraries(sac_shared PRIVATE ${static_draco})
+endif()
 if(APPLE)
   target_link_options(sac_shared PRIVATE -Wl,-exported_symbol,_sac_*)
 elseif(NOT WIN32)

@@ -37,13 +37,11 @@ Status SpectralBasis::Build(std::vector<Triangle> triangles, const PositionMatri
     const double share = static_cast<double>(bases) * c.count / n;
     counts.push_back(std::min(c.count, std::max(1u, static_cast<std::uint32_t>(share))));
   }
-  // The exact harmonics use only the size of the grid.
-  const std::vector<GridPosition> grid(n);
   const EdgeList edges = BuildEdges(triangles_);
   HarmonicBasis harmonics;
   const std::vector<double> weights = CotangentWeights(first_frame, triangles_, edges);
   const Eigen::VectorXd masses = VertexMasses(first_frame, triangles_);
-  SAC_RETURN_IF_ERROR(ComputeHarmonics({edges, weights, masses, grid, components_, counts}, {}, harmonics));
+  SAC_RETURN_IF_ERROR(ComputeHarmonics({edges, weights, masses, components_, counts}, harmonics));
   const auto columns = static_cast<Eigen::Index>(std::accumulate(counts.begin(), counts.end(), 0u));
   Eigen::MatrixXd at_vertices = Eigen::MatrixXd::Zero(n, columns);
   Eigen::Index column = 0;

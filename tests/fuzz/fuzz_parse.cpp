@@ -6,9 +6,9 @@
 #include <vector>
 
 #include "format/frame_coder.h"
-#include "format/group_structure.h"
-#include "format/group_syntax.h"
+#include "format/group.h"
 #include "format/i_frame_syntax.h"
+#include "format/metadata.h"
 #include "format/packet.h"
 #include "format/range_coder.h"
 #include "format/sequence_header.h"
@@ -66,7 +66,7 @@ void ReadGroup(std::span<const std::uint8_t> payload, const SequenceHeader& head
   if (!ParseGroup(payload, group, bytes).ok()) return;
   FUZZ_REQUIRE(WriteGroup(group, bytes) == Bytes(payload.begin(), payload.end()));
   const std::uint32_t frames = group.frames;
-  if (group.open() || frames > FuzzLimits().expert.frames_per_group) return;
+  if (group.open() || group.layered() || frames > FuzzLimits().expert.frames_per_group) return;
   const std::vector<FrameSlot> slots = GroupStructure(frames, group.pyramid);
   FUZZ_REQUIRE(slots.size() == frames);
   const Frames read = ReadFrames(bytes, header, layouts, slots);
@@ -113,11 +113,24 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
       layouts.reset();
     } else if (packet.type == PacketType::kIFrame && header) {
       IFrameSyntax syntax;
-      if (!ParseIFrame(packet.payload, *header, syntax).ok()) continue;
-      FUZZ_REQUIRE(WriteIFrame(syntax, *header) == packet.payload);
+      RangeDecoder positions({});
+      if (!ParseIFrame(packet.payload, *header, syntax, positions).ok()) continue;
+      const Bytes written = WriteIFrame(syntax, *header);
+      IFrameSyntax again;
+      FUZZ_REQUIRE(ParseIFrame(written, *header, again, positions).ok() && positions.AtEnd());
+      FUZZ_REQUIRE(WriteIFrame(again, *header) == written);
       layouts = LayOut(*header, syntax);
     } else if (packet.type == PacketType::kGroup && layouts) {
       ReadGroup(packet.payload, *header, *layouts);
+    } else if (packet.type == PacketType::kLayer) {
+      LayerSyntax layer;
+      std::span<const std::uint8_t> code;
+      if (ParseLayer(packet.payload, layer, code).ok()) FUZZ_REQUIRE(WriteLayer(layer, code) == packet.payload);
+    } else if (packet.type == PacketType::kMetadata) {
+      Metadata metadata, again;
+      if (!ParseMetadata(packet.payload, metadata).ok()) continue;
+      const Bytes written = WriteMetadata(metadata);
+      FUZZ_REQUIRE(ParseMetadata(written, again).ok() && WriteMetadata(again) == written);
     } else if (packet.type == PacketType::kFrame && layouts) {
       const std::vector<FrameSlot> slots = {ChainSlot(0)};
       (void)ReadFrames(packet.payload, *header, *layouts, slots);

@@ -13,9 +13,9 @@ using namespace sac;
 // Positions in their coding order, through the same body as the decoder's.
 std::vector<std::uint8_t> Encode(const PositionGraph& graph, const PositionSteps& steps, int bits,
                                  const std::vector<GridPosition>& positions) {
-  RangeEncoder range;
+  RecordedBins bins;
   PositionPredictor predictor(graph, steps, bits);
-  PositionCoder<RangeEncoder> coder;
+  PositionCoder<RecordedBins> coder;
   for (const std::uint32_t v : graph.CodingOrder()) {
     predictor.Predict(v);
     const PositionPredictor::Prediction& p = predictor.now();
@@ -28,10 +28,12 @@ std::vector<std::uint8_t> Encode(const PositionGraph& graph, const PositionSteps
       offset[j] = 16 * at - p.centre[p.axes[j]];
     }
     GridPosition coded;
-    FUZZ_REQUIRE(coder.Code(range, predictor, bits, residual, coded));
+    FUZZ_REQUIRE(coder.Code(bins, predictor, bits, residual, coded));
     FUZZ_REQUIRE(coded == positions[v]);
     predictor.Learn(coded);
   }
+  RangeEncoder range;
+  bins.WriteTo(range);
   return range.Finish();
 }
 
@@ -49,14 +51,16 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   }
   const PositionGraph graph(vertices, triangles);
   std::vector<GridPosition> positions;
-  const Status status = DecodePositions(in.rest(), graph, steps, bits, positions);
+  RangeDecoder range(in.rest());
+  const Status status = DecodePositions(range, graph, steps, bits, positions);
   if (!status.ok()) return 0;
   FUZZ_REQUIRE(positions.size() == vertices);
   for (const GridPosition& p : positions) FUZZ_REQUIRE(*std::max_element(p.begin(), p.end()) >> bits == 0);
 
   const std::vector<std::uint8_t> again = Encode(graph, steps, bits, positions);
   std::vector<GridPosition> back;
-  FUZZ_REQUIRE(DecodePositions(again, graph, steps, bits, back).ok());
+  RangeDecoder range_again(again);
+  FUZZ_REQUIRE(DecodePositions(range_again, graph, steps, bits, back).ok() && range_again.AtEnd());
   FUZZ_REQUIRE(back == positions);
   return 0;
 }

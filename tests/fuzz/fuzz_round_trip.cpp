@@ -56,7 +56,7 @@ EncoderSettings MakeSettings(Choices& in) {
   EncoderSettings s;
   s.quality = in.Below(101);
   s.harmonics = 1 + in.Below(60);
-  s.samples_per_harmonic = in.Below(4);
+  s.handles_per_harmonic = in.Below(4);
   s.group = 1 + in.Below(12);
   s.pyramid = 1 + in.Below(12);
   s.level_growth = 1 + in.Below(65) / 64.0;

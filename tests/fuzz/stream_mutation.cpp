@@ -6,17 +6,16 @@
 #include <utility>
 
 #include "format/bytes.h"
-#include "format/group_syntax.h"
+#include "format/group.h"
 #include "format/sequence_header.h"
 #include "tests/fuzz/stream_synthesis.h"
 
 namespace sac {
 namespace {
 
-// The I-frame's parts can only be mutated by themselves: between them stand their sizes.
+// The I-frame's parts can only be mutated by themselves: the mesh stands behind its size.
 struct IFrameParts {
-  Bytes mesh, positions, side;
-  std::uint32_t position_step = 16, position_slope = 0;
+  Bytes mesh, code;
 };
 
 Bytes ToBytes(std::span<const std::uint8_t> span) { return {span.begin(), span.end()}; }
@@ -24,14 +23,8 @@ Bytes ToBytes(std::span<const std::uint8_t> span) { return {span.begin(), span.e
 IFrameParts CutIFrame(const Bytes& payload) {
   IFrameParts parts;
   ByteReader reader(payload);
-  const auto take = [&] { return ToBytes(reader.Bytes(std::min<std::size_t>(reader.Varint(), reader.remaining()))); };
-  parts.mesh = take();
-  if (!parts.mesh.empty()) {
-    parts.position_step = reader.Varint();
-    parts.position_slope = reader.Varint();
-    parts.positions = take();
-  }
-  parts.side = ToBytes(std::span(payload).subspan(reader.position()));
+  parts.mesh = ToBytes(reader.Bytes(std::min<std::size_t>(reader.Varint(), reader.remaining())));
+  parts.code = ToBytes(std::span(payload).subspan(reader.position()));
   return parts;
 }
 
@@ -39,32 +32,13 @@ Bytes JoinIFrame(const IFrameParts& parts) {
   ByteWriter out;
   out.Varint(static_cast<std::uint32_t>(parts.mesh.size()));
   out.Bytes(parts.mesh);
-  if (!parts.mesh.empty()) {
-    out.Varint(parts.position_step);
-    out.Varint(parts.position_slope);
-    out.Varint(static_cast<std::uint32_t>(parts.positions.size()));
-    out.Bytes(parts.positions);
-  }
-  out.Bytes(parts.side);
+  out.Bytes(parts.code);
   return std::move(out.bytes());
 }
 
 void MutateIFrame(Bytes& payload, std::mt19937& random, const MutateBytes& mutate) {
   IFrameParts parts = CutIFrame(payload);
-  switch (random() % 4) {
-    case 0:
-      mutate(parts.mesh, random);
-      break;
-    case 1:
-      mutate(parts.positions, random);
-      break;
-    case 2:
-      mutate(parts.side, random);
-      break;
-    default:
-      (random() % 2 ? parts.position_step : parts.position_slope) =
-          static_cast<std::uint32_t>(random() >> random() % 32);
-  }
+  mutate(random() % 3 == 0 ? parts.mesh : parts.code, random);
   payload = JoinIFrame(parts);
 }
 
@@ -84,7 +58,7 @@ void MutateOrder(std::vector<Packet>& packets, std::mt19937& random) {
       packets.erase(at(i));
       break;
     default:  // records are no packets, and the other way round
-      packets[i].type = static_cast<PacketType>(random() % 6);
+      packets[i].type = static_cast<PacketType>(random() % (kPacketTypes + 2));
   }
 }
 
@@ -99,8 +73,10 @@ std::vector<Packet> CutPackets(std::span<const std::uint8_t> stream) {
     const std::uint32_t tag = reader.Varint();
     if (!reader.ok()) break;
     Packet packet;
-    packet.type = !open ? static_cast<PacketType>(tag & 3) : tag == 0 ? PacketType::kGroupEnd : PacketType::kFrame;
-    const std::uint32_t size = !open ? tag / 4 : tag == 0 ? 0 : tag - 1;
+    packet.type = !open      ? static_cast<PacketType>(tag % kPacketTypes)
+                  : tag == 0 ? PacketType::kGroupEnd
+                             : PacketType::kFrame;
+    const std::uint32_t size = !open ? tag / kPacketTypes : tag == 0 ? 0 : tag - 1;
     packet.payload = ToBytes(reader.Bytes(std::min<std::size_t>(size, reader.remaining())));
     reader.Bytes(std::min<std::size_t>(packet.type == PacketType::kFrame ? 1 : 4, reader.remaining()));
     open = open ? tag != 0 : packet.type == PacketType::kGroup && OpensGroup(packet.payload);

@@ -11,8 +11,7 @@
 #include "codec/shape.h"
 #include "format/bytes.h"
 #include "format/frame_coder.h"
-#include "format/group_structure.h"
-#include "format/group_syntax.h"
+#include "format/group.h"
 #include "format/i_frame_syntax.h"
 #include "format/range_coder.h"
 #include "geometry/components.h"
@@ -21,6 +20,8 @@
 
 namespace sac {
 namespace {
+
+constexpr std::uint32_t kMaxPyramid = (1u << 30) - 1;
 
 // Of any magnitude, small ones more often.
 std::uint32_t AnySize(std::mt19937& random) { return static_cast<std::uint32_t>(random() >> random() % 32); }
@@ -76,7 +77,7 @@ void MutateIFrameSyntax(IFrameSyntax& s, const SequenceHeader& h, std::mt19937& 
       if (!s.loose_triangles.empty()) s.loose_triangles[random() % s.loose_triangles.size()][random() % 3] = corner();
       break;
     case 4:
-      s.samples_per_harmonic = random() % 2 ? random() % 4 : AnySize(random);
+      s.handles_per_harmonic = random() % 2 ? random() % 4 : AnySize(random);
       break;
     default:
       (random() % 2 ? s.position_step : s.position_slope) = AnySize(random);
@@ -115,7 +116,7 @@ void FillFrame(FrameSyntax& frame, std::uint32_t index, bool previous, std::mt19
 }
 
 Bytes AnyGroup(const SequenceHeader& h, const PlaneLayouts& layouts, std::uint32_t first, std::uint32_t frames,
-               std::mt19937& random) {
+               std::uint32_t segment, std::mt19937& random) {
   const bool previous = h.references_previous();
   const std::uint32_t pyramid = previous ? 1 : 1 + AnySize(random) / 2;
   RangeEncoder range;
@@ -128,7 +129,63 @@ Bytes AnyGroup(const SequenceHeader& h, const PlaneLayouts& layouts, std::uint32
     FillFrame(frame, index++, previous, random);
     if (!coder.Code(range, slot, frame)) break;
   }
-  return WriteGroup({frames, first, pyramid}, range.Finish());
+  return WriteGroup({frames, first, std::min(pyramid, kMaxPyramid), segment}, range.Finish());
+}
+
+// A layered group as packets, of which some may be missing at the end.
+std::vector<Packet> AnyLayeredGroup(const SequenceHeader& h, const PlaneLayouts& layouts, GroupSyntax group,
+                                    std::mt19937& random) {
+  group.pyramid = 1 + random() % 16;
+  group.base_levels = 1 + random() % 4;
+  const std::vector<FrameSlot> slots = LayeredOrder(GroupStructure(group.frames, group.pyramid), group.base_levels);
+  std::vector<FrameSyntax> frames;
+  for (const FrameSlot& slot : slots) {
+    frames.push_back({slot, {}, EmptyPlanes(layouts)});
+    FillFrame(frames.back(), static_cast<std::uint32_t>(frames.size() - 1), false, random);
+  }
+  FrameCoder<RangeEncoder> coder(h, layouts);
+  std::vector<Packet> packets;
+  for (const GroupLayer& layer : LayersOf(slots, group.base_levels, layouts)) {
+    RangeEncoder range;
+    bool good = true;
+    for (std::size_t i = layer.first; i < layer.end && good; ++i) {
+      good = layer.has_frames() ? coder.CodeBase(range, slots[i], frames[i])
+                                : coder.CodeLater(range, i, layer.plane, frames[i]);
+    }
+    const auto number = static_cast<std::uint32_t>(packets.size());
+    const Bytes code = range.Finish();
+    packets.push_back(number == 0 ? Packet{PacketType::kGroup, WriteGroup(group, code)}
+                                  : Packet{PacketType::kLayer, WriteLayer({group.first_frame, number}, code)});
+    if (!good || random() % 8 == 0) break;
+  }
+  return packets;
+}
+
+// Appends groups of any kind, in one segment or several, to the start `made`. Returns the number of their frames.
+std::uint32_t AppendGroups(SequenceHeader h, const PlaneLayouts& layouts, std::vector<Packet>& made,
+                           std::mt19937& random) {
+  std::uint32_t total = 0;
+  std::uint32_t segment = 0;
+  for (std::size_t i = random() % 4; i > 0; --i) {
+    const std::uint32_t frames = 1 + random() % 9;
+    if (random() % 4 == 0) {  // the same mesh moves otherwise
+      h.level_growth = static_cast<std::uint8_t>(64 + random() % 65);
+      made.push_back({PacketType::kHeader, WriteSequenceHeader(h)});
+      made.push_back(made[1]);
+      ++segment;
+    }
+    if (!h.references_previous() && random() % 3 == 0) {
+      GroupSyntax group;
+      group.frames = frames;
+      group.first_frame = total;
+      group.segment = segment;
+      for (Packet& packet : AnyLayeredGroup(h, layouts, group, random)) made.push_back(std::move(packet));
+    } else {
+      made.push_back({PacketType::kGroup, AnyGroup(h, layouts, total, frames, segment, random)});
+    }
+    total += frames;
+  }
+  return total;
 }
 
 }  // namespace
@@ -140,7 +197,7 @@ bool Resynthesize(std::vector<Packet>& packets, std::mt19937& random) {
   const Limits limits = FuzzLimits();
   SequenceHeader h;
   IFrameSyntax s;
-  if (!ParseSequenceHeader(packets[0].payload, limits, h).ok() || !ParseIFrame(packets[1].payload, h, s).ok()) {
+  if (!ParseSequenceHeader(packets[0].payload, limits, h).ok() || !ReadIFrame(packets[1].payload, h, s).ok()) {
     return false;
   }
   for (std::size_t i = random() % 4; i > 0; --i) MutateHeader(h, random);
@@ -163,16 +220,11 @@ bool Resynthesize(std::vector<Packet>& packets, std::mt19937& random) {
   if (!AssembleIFrame(s, h, std::move(draco), decoded).ok()) return false;
   ShareHarmonics(decoded.mesh, h, s, random);
   Shape shape;
-  if (!BuildShape(h, std::move(decoded.mesh), s.harmonics, s.samples_per_harmonic, limits, shape).ok()) return false;
+  if (!BuildShape(h, std::move(decoded.mesh), s.harmonics, s.handles_per_harmonic, limits, shape).ok()) return false;
   s.fingerprint = Fingerprint(shape.basis, shape.patch_basis);
 
-  std::uint32_t total = 0;
   std::vector<Packet> made = {{PacketType::kHeader, WriteSequenceHeader(h)}, {PacketType::kIFrame, WriteIFrame(s, h)}};
-  for (std::size_t i = random() % 3; i > 0; --i) {
-    const std::uint32_t frames = 1 + random() % 9;
-    made.push_back({PacketType::kGroup, AnyGroup(h, shape.layouts, total, frames, random)});
-    total += frames;
-  }
+  const std::uint32_t total = AppendGroups(h, shape.layouts, made, random);
   ByteWriter end;
   end.Varint(total);
   made.push_back({PacketType::kEnd, end.bytes()});
