@@ -173,8 +173,6 @@ Status ClipEncoder::Run(const ByteSink& sink, EncodedClip& result) {
 Status EncodeClip(ClipReader& clip, const ClipEncoding& encoding,
                   const std::function<Status(std::span<const std::uint8_t> bytes)>& sink, EncodedClip& result) {
   return Contain([&] {
-    // The clip may have been read to a later segment, whose mesh is another.
-    SAC_RETURN_IF_ERROR(clip.Rewind());
     // The shape is fitted and measured beside the encoder, which would check the mesh too late for them.
     SAC_RETURN_IF_ERROR(Named(clip.name(), CheckMesh(clip.mesh(), encoding.encoder.limits)));
     return ClipEncoder(clip, encoding).Run(sink, result);

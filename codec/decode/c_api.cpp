@@ -339,6 +339,8 @@ sac_status sac_decoder_interpolate_handles(sac_decoder* decoder, double frame_ti
   });
 }
 
+uint32_t sac_decoder_layers(const sac_decoder* decoder) { return decoder == nullptr ? 0 : decoder->decoder.layers(); }
+
 sac_status sac_decoder_frames(sac_decoder* decoder, uint32_t* frames) {
   return Run(decoder, [&](sac::Decoder& d) {
     if (frames == nullptr) return Missing();

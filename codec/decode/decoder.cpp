@@ -114,6 +114,7 @@ const Metadata* Decoder::metadata() const {
 }
 
 const std::vector<std::uint32_t>& Decoder::order() const { return impl_->stream->start().order(); }
+std::uint32_t Decoder::layers() const { return impl_->stream->layers(); }
 std::optional<std::uint32_t> Decoder::frames() const { return impl_->stream->total_frames(); }
 const std::vector<FrameRange>& Decoder::lost_frames() const { return impl_->stream->lost().ranges(); }
 

@@ -30,7 +30,8 @@ GroupSequence::GroupSequence(const SequenceHeader& header, Shape& shape, const D
       source_(shape, header, ThreadsFor(header, settings, shape), settings.run_jobs),
       parser_(header, shape, settings.limits),
       next_frame_(position.next_frame),
-      wanted_(position.wanted) {}
+      wanted_(position.wanted),
+      layers_(position.layers) {}
 
 Status GroupSequence::ContinueAt(std::uint32_t frame) {
   const std::uint64_t expected = next_frame_.value_or(frame);
@@ -51,6 +52,7 @@ Status GroupSequence::TakeGroup(const GroupSyntax& group, std::span<const std::u
       return damage_.Judge(std::move(status));
     }
   }
+  layers_ = std::max(layers_, layered_ ? static_cast<std::uint32_t>(layered_->count) : 1);
   if (Status status = ContinueAt(group.first_frame); !status.ok()) return damage_.Judge(std::move(status));
   places.Add(begin, group.first_frame, group.segment);
   if (group.open()) {

@@ -44,12 +44,13 @@ class GroupSequence {
   struct Position {
     std::optional<std::uint64_t> next_frame = 0;  // of the stream; none after a seek to a group of unknown number
     std::uint64_t wanted = 0;                     // frames before this one are not given out
+    std::uint32_t layers = 0;                     // the most that a group so far may have
   };
 
   // All references must outlive the object. The memory of the threads is added to that of `shape`.
   GroupSequence(const SequenceHeader& header, Shape& shape, const DecoderSettings& settings, DamagePolicy& damage,
                 const Position& position);
-  Position position() const { return {next_frame_, wanted_}; }
+  Position position() const { return {next_frame_, wanted_, layers_}; }
 
   // Takes a group packet that begins at byte `begin` of the stream, and notes its place in `places`. `group` and `code`
   // are what ParseGroup() made of `payload`. Returns kCorrupt or kLimit as DamagePolicy judges.
@@ -117,6 +118,7 @@ class GroupSequence {
   std::optional<std::uint64_t> next_frame_;
   std::uint64_t next_out_ = 0;  // next of the frames in source_ to be given out
   std::uint64_t wanted_;
+  std::uint32_t layers_;
 };
 
 }  // namespace sac

@@ -56,6 +56,8 @@ class StreamDecoder {
   const StreamStart& start() const { return start_; }
   const std::optional<Metadata>& metadata() const { return metadata_; }
   std::optional<std::uint32_t> total_frames() const { return total_frames_; }
+  // The most layers that a group so far may have, 0 before the first.
+  std::uint32_t layers() const { return groups_ ? groups_->position().layers : position_.layers; }
   const LostFrames& lost() const { return damage_.lost(); }
 
  private:

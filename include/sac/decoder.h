@@ -197,6 +197,9 @@ class Decoder {
   const Metadata* metadata() const;
   // Per vertex its index in the input; empty when the stream does not keep the order.
   const std::vector<std::uint32_t>& order() const;
+  // The most layers that a group so far may have (spec.md 6.1), those counted that were dropped: 1 where groups have no
+  // layers, 0 before the first group.
+  std::uint32_t layers() const;
   // How many frames the clip has; nothing before the end or AddIndex() has told.
   std::optional<std::uint32_t> frames() const;
   // The frames that damage has cost so far, ascending, with skip_damage.

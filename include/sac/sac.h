@@ -235,6 +235,9 @@ SAC_API sac_status sac_decoder_receive_handles(sac_decoder* decoder, float* matr
 SAC_API sac_status sac_decoder_interpolate_handles(sac_decoder* decoder, double frame_time, float* matrices,
                                                    size_t count, sac_frame_info* info, uint32_t* exact);
 
+/* The most layers that a group so far may have (spec.md 6.1), those counted that were dropped: 1 where groups have no
+ * layers, 0 before the first group. A smaller sac_settings.layers gives a coarser clip. */
+SAC_API uint32_t sac_decoder_layers(const sac_decoder* decoder);
 /* How many frames the clip has. SAC_NEED_MORE_DATA before the end or sac_decoder_add_index() has told. */
 SAC_API sac_status sac_decoder_frames(sac_decoder* decoder, uint32_t* frames);
 

@@ -88,6 +88,30 @@ TEST(Layers, EveryPrefixIsACoarserStream) {
   EXPECT_EQ(before, 0);
 }
 
+TEST(Layers, DecodersTellHowManyThereAre) {
+  const auto layers_of = [](const Bytes& stream) {
+    Decoder decoder;
+    EXPECT_EQ(decoder.layers(), 0u);
+    DecodedFrame frame;
+    for (std::span<const std::uint8_t> rest(stream); !rest.empty();) {
+      EXPECT_TRUE(decoder.Send(rest).ok());
+      while (decoder.Receive(frame).ok()) {
+      }
+    }
+    const std::uint32_t layers = decoder.layers();
+    decoder.Reset();
+    EXPECT_EQ(decoder.layers(), 0u);
+    return layers;
+  };
+  const Bytes stream = Encode(BendingClip(kFrames), Layered()).bytes;
+  const std::uint32_t layers = layers_of(stream);
+  EXPECT_GE(layers, 3u);
+  EXPECT_EQ(Thinned(stream, layers), stream);
+  EXPECT_LT(Thinned(stream, layers - 1).size(), stream.size());
+  EXPECT_EQ(layers_of(Thinned(stream, 1)), layers);
+  EXPECT_EQ(layers_of(Encode(BendingClip(kFrames), {}).bytes), 1u);
+}
+
 TEST(Layers, ThinningKeepsTheIndexTrue) {
   const Bytes stream = Encode(BendingClip(kFrames), Layered()).bytes;
   for (std::uint32_t layers = 1; layers <= 7; ++layers) {

@@ -7,6 +7,7 @@ const $ = (id) => document.getElementById(id);
 const player = $('player');
 const builtin = { input: new URL('walker.sac', document.baseURI).href, name: 'A walking figure' };
 let clip = builtin;
+let shown = null, mostLayers = 0;
 let decodes = [], renders = [], pictures = [];
 
 const count = new Intl.NumberFormat('en');
@@ -22,7 +23,15 @@ async function show(next) {
   for (const id of ['bytes', 'rate', 'bpvf', 'vertices', 'triangles', 'frames', 'start', 'decode', 'memory']) $(id).textContent = '–';
   $('ratio').textContent = '';
   decodes = [];
+  if (next !== shown) {
+    mostLayers = 0;
+    $('layers').value = $('layers').max = 1;
+    $('layer-row').hidden = true;
+  }
+  shown = next;
   player.options = { interpolation: $('between').value };
+  // All of them are wanted at the slider's end, also those of later groups that have more.
+  if (mostLayers > 0 && $('layers').value < mostLayers) player.options.layers = Number($('layers').value);
   try {
     await player.load(next.input);
     paint();
@@ -47,6 +56,7 @@ function figures() {
   const { mesh, viewer } = player;
   if (!mesh || !viewer) return;
   const { stats, frames, frameRate, duration } = mesh;
+  layerSlider(stats.layers);
   const vertices = mesh.userData.sourceVertices;
   const { index } = mesh.geometry;
   if (vertices) {
@@ -68,6 +78,26 @@ function figures() {
   pictures = pictures.filter((t) => now - t < 1000);
   $('fps').textContent = String(pictures.length);
   graph();
+}
+
+// Streams of groups without layers have one, and no slider.
+function layerSlider(layers) {
+  if (layers > mostLayers) {
+    const slider = $('layers'), all = mostLayers === 0 || Number(slider.value) === mostLayers;
+    mostLayers = layers;
+    slider.max = layers;
+    if (all) slider.value = layers;
+  }
+  $('layer-row').hidden = mostLayers < 2;
+  $('layer-count').textContent = `${$('layers').value} of ${mostLayers}`;
+}
+
+// Begins the clip again, at the same time.
+async function again() {
+  const time = player.currentTime, { paused } = player;
+  await show(clip);
+  if (paused) player.pause();
+  player.currentTime = time;
 }
 
 function graph() {
@@ -101,7 +131,8 @@ $('file').onchange = () => {
   $('file').value = '';
 };
 $('builtin').onclick = () => show(builtin);
-$('between').onchange = () => show(clip);
+$('between').onchange = again;
+$('layers').onchange = again;
 $('follow').onchange = () => player.setAttribute('follow', String($('follow').checked));
 $('wireframe').onchange = () => (player.wireframe = $('wireframe').checked);
 $('color').oninput = paint;

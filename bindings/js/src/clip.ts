@@ -25,6 +25,8 @@ export interface Shape {
   buffers: ShapeBuffers;
   /** Milliseconds that it took to decode. */
   decodeMs: number;
+  /** The most layers that a group so far may have. */
+  layers: number;
 }
 
 /** What happens to a clip, told to its owner. */
@@ -298,7 +300,7 @@ export class Clip {
     const mesh = this.mesh!;
     mesh.complete(buffers);
     const decodeMs = performance.now() - begin;
-    return { mesh, shape: { epoch: run.epoch, travel: 0, frame, box: info.box, buffers, decodeMs } };
+    return { mesh, shape: { epoch: run.epoch, travel: 0, frame, box: info.box, buffers, decodeMs, layers: this.decoder.layers } };
   }
 
   private give({ shape, mesh }: Decoded, run: Run): void {

@@ -221,6 +221,11 @@ export class SacDecoder {
       ? this.instance.view().getUint32(this.scratch, true) : undefined;
   }
 
+  /** The most layers that a group so far may have: 1 where groups have no layers, 0 before the first group. */
+  get layers(): number {
+    return this.call('sac_decoder_layers');
+  }
+
   /** Goes to a frame: the next bytes sent must be those from the returned number on. Null before the mesh is known. */
   seek(frame: number): number | null {
     if (!Number.isInteger(frame) || frame < 0) throw new SacArgumentError(`frame ${frame} cannot be sought`);

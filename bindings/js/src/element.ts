@@ -21,7 +21,7 @@ let loader: SacLoader | null = null;
 
 /**
  * Attributes: `src`, `autoplay`, `loop` (on unless "false"), `controls` (on unless "false"), `rate`, `wireframe`,
- * `follow` (on unless "false"), `decoder-path`. Events: those of SacMesh, as `sac-mesh`, `sac-frame`, `sac-ended`,
+ * `follow` (on unless "false"), `layers` (of each group, fewer are coarser), `decoder-path`. Events: those of SacMesh, as `sac-mesh`, `sac-frame`, `sac-ended`,
  * `sac-error`. Keys: space, arrows, Home, End, L, W, R, F, [ and ].
  */
 export class SacPlayer extends HTMLElement {
@@ -79,6 +79,7 @@ export class SacPlayer extends HTMLElement {
     const mesh = loader!.open(input, {
       autoplay: this.hasAttribute('autoplay'),
       loop: this.getAttribute('loop') !== 'false',
+      ...(this.hasAttribute('layers') ? { layers: Number(this.getAttribute('layers')) } : {}),
       ...this.options,
     });
     this.mesh = mesh;

@@ -49,6 +49,8 @@ export interface SacStats {
   decoded: number;
   shown: number;
   late: number;
+  /** The most layers that a group of frames so far may have: 1 where there are none; 0 before the first shape. */
+  layers: number;
   /** Milliseconds from open() to the mesh, which is shown as a still, and to the first shape; NaN until then. */
   meshMs: number;
   firstShapeMs: number;
@@ -78,7 +80,7 @@ export class SacMesh extends Mesh<BufferGeometry, Material> {
   /** What to add to all positions to have the author's coordinates. */
   readonly offset = new Vector3();
   readonly stats: SacStats = {
-    bytes: 0, memory: 0, decodeMs: 0, decoded: 0, shown: 0, late: 0, meshMs: NaN, firstShapeMs: NaN,
+    bytes: 0, memory: 0, decodeMs: 0, decoded: 0, shown: 0, late: 0, layers: 0, meshMs: NaN, firstShapeMs: NaN,
   };
   /** The clock that the mesh follows; null: its own. */
   media: MediaClock | null;
@@ -317,6 +319,7 @@ export class SacMesh extends Mesh<BufferGeometry, Material> {
       this.emit('progress', { bytes: loaded });
     }
     stats.decodeMs = shape.decodeMs;
+    stats.layers = shape.layers;
     stats.decoded += 1;
     if (shape.epoch === this.timeline.run.epoch && shape.travel < this.timeline.wanted - this.timeline.run.step) stats.late += 1;
     this.geometries.set(shape, this.coming);

@@ -136,6 +136,10 @@ test('layers: as many as are asked for', () => {
     return frames.reduce((sum, f, i) => sum + f.positions.reduce((s, x, k) => s + Math.abs(x - all[i].positions[k]), 0), 0);
   });
   assert.ok(off[0] > off[1] && off[1] >= 0 && off[2] === 0, String(off));
+  const counted = new SacDecoder(module);
+  assert.equal(counted.layers, 0);
+  decodeAll(counted, bytes);
+  assert.ok(counted.layers >= 3, String(counted.layers));
   assert.throws(() => new SacDecoder(module, { layers: 0 }), SacArgumentError);
 });
 

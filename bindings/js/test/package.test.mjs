@@ -151,6 +151,28 @@ test('the page of the demonstration works from a folder of its own', async () =>
   await browser.waitForFunction(() => document.querySelector('sac-player')?.mesh?.stats.shown >= 5, null, { timeout: 110000 });
   assert.ok(asked.every((url) => url.startsWith(alone.url) || /^(blob|data):/.test(url)), asked.join(' '));
   await browser.waitForFunction(() => document.getElementById('frames').textContent.includes('200'));
+  // Fewer layers are another clip: its shapes differ, and so it stays when it comes round again.
+  const at = () => browser.evaluate(async () => {
+    const { mesh } = document.querySelector('sac-player');
+    mesh.pause();
+    mesh.seek(0.5);
+    await new Promise((resolve) => mesh.addEventListener('frame', function shown() {
+      if (Math.abs(mesh.currentTime - 0.5) > 0.02) return;
+      mesh.removeEventListener('frame', shown);
+      resolve();
+    }));
+    return [...mesh.geometry.attributes.position.array.slice(0, 30)];
+  });
+  const fine = await at();
+  await browser.waitForFunction(() => !document.getElementById('layer-row').hidden);
+  await browser.evaluate(() => {
+    const slider = document.getElementById('layers');
+    slider.value = 1;
+    slider.dispatchEvent(new Event('change'));
+  });
+  await browser.waitForFunction(() => document.querySelector('sac-player').mesh?.stats.shown >= 1 &&
+    document.getElementById('layer-count').textContent.startsWith('1 of '));
+  assert.notDeepEqual(await at(), fine);
   // A file of the user's own.
   await browser.setInputFiles('#file', join(root, 'build/web/flag.sac'));
   await browser.waitForFunction(() => document.getElementById('name').textContent === 'flag.sac' &&

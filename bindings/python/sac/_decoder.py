@@ -132,6 +132,9 @@ class Decoder:
             runs.append(range(first.value, first.value + count.value))
         return runs
 
+    def layers(self) -> int:
+        return lib.sac_decoder_layers(self._pointer)
+
     def frames(self) -> int:
         """How many frames there are; without an index it reads the rest of the stream, decoding nothing."""
         count = ctypes.c_uint32()

@@ -267,6 +267,7 @@ _FUNCTIONS = {
     "sac_decoder_seek_time": (c_int, c_void_p, c_double, _TO(c_uint64)),
     "sac_decoder_add_index": (c_int, c_void_p, c_void_p, c_size_t, _TO(c_size_t)),
     "sac_decoder_interpolate": (c_int, c_void_p, c_double, _TO(FrameBuffers), _TO(FrameInfo)),
+    "sac_decoder_layers": (c_uint32, c_void_p),
     "sac_decoder_frames": (c_int, c_void_p, _TO(c_uint32)),
     "sac_decoder_lost_count": (c_size_t, c_void_p),
     "sac_decoder_lost": (c_int, c_void_p, c_size_t, _TO(c_uint32), _TO(c_uint32)),

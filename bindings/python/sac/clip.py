@@ -53,6 +53,7 @@ class Clip:
         order: Union[bool, np.ndarray] = False,
         threads: int = 1,
         skip_damage: bool = False,
+        layers: Optional[int] = None,
         **limits: Union[int, float],
     ):
         data, self.name = _read(source)
@@ -60,6 +61,10 @@ class Clip:
             "threads": operator.index(threads),
             "skip_damage": int(bool(skip_damage)),
         }
+        if layers is not None:
+            options["layers"] = operator.index(layers)
+            if not 0 < options["layers"] <= 0xFFFFFFFF:
+                raise errors.InvalidArgumentError(f"{self.name}: {layers} layers cannot be decoded")
         for key, value in limits.items():
             if key not in _LIMITS:
                 raise TypeError(f"open() has no argument {key!r}")
@@ -131,6 +136,12 @@ class Clip:
             if said.has_bounds:
                 given["box"] = np.array([said.box_low, said.box_high])
             return given
+
+    @property
+    def layers(self) -> int:
+        """The most layers that a group decoded so far may have: 1 without layers, 0 before the first frame."""
+        with self._lock:
+            return self._decoder.layers()
 
     @property
     def lost(self) -> List[range]:
@@ -293,6 +304,7 @@ def open_clip(
     order: Union[bool, np.ndarray] = False,
     threads: int = 1,
     skip_damage: bool = False,
+    layers: Optional[int] = None,
     **limits: Union[int, float],
 ) -> Clip:
     """Opens a stream: ``sac.open("walk.sac")[17]``.
@@ -303,6 +315,7 @@ def open_clip(
             or per decoded vertex its index, such as :attr:`Encoding.order`. Frames are copied once then.
         threads: frames of a group that are reconstructed at the same time, 1 to 1024.
         skip_damage: whether to go on after damage at the next sound group; ``Clip.lost`` tells what is lost.
+        layers: how many layers of each group to decode, in streams that have them; fewer are coarser. None: all.
         limits: what the stream may ask for, finite by default: ``max_vertices``, ``max_triangles``, ``max_memory``
             (bytes) and ``max_work`` (multiplications for what is derived from the first frame).
 
@@ -312,4 +325,4 @@ def open_clip(
         OSError: the file cannot be read.
         CorruptError, UnsupportedError, LimitError: the stream is damaged, of another version, or asks for too much.
     """
-    return Clip(source, order=order, threads=threads, skip_damage=skip_damage, **limits)
+    return Clip(source, order=order, threads=threads, skip_damage=skip_damage, layers=layers, **limits)

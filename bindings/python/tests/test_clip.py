@@ -176,6 +176,19 @@ class Damage(unittest.TestCase):
             clip[12]
         np.testing.assert_array_equal(clip[25], self.all[25])
 
+    def test_fewer_layers_are_coarser(self):
+        clip = sac.open(VALID / "layers.sac")
+        self.assertEqual(clip.layers, 0)
+        fine = clip[:]
+        self.assertGreaterEqual(clip.layers, 3)
+        coarse = sac.open(VALID / "layers.sac", layers=1)[:]
+        self.assertEqual(coarse.shape, fine.shape)
+        self.assertGreater(np.abs(coarse - fine).max(), 0)
+        np.testing.assert_array_equal(sac.open(VALID / "layers.sac", layers=clip.layers)[:], fine)
+        for bad in (0, -1, 1 << 32):
+            with self.assertRaisesRegex(sac.InvalidArgumentError, "layers cannot be decoded"):
+                sac.open(self.data, layers=bad)
+
     def test_a_second_mesh_is_told(self):
         got = []
         with self.assertRaisesRegex(sac.UnsupportedError, "another mesh"):

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Writes a synthetic clip as a stream to the standard output: for tests and the demonstration of bindings/js, which
-// need no other build of the encoder for that. usage: make_clip KIND VERTICES FRAMES QUALITY GROUP
+// need no other build of the encoder for that. usage: make_clip KIND VERTICES FRAMES QUALITY GROUP [BASE_LEVELS]
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -11,11 +11,11 @@
 
 int main(int argc, char** argv) {
   const auto& names = sac::kSynthKindNames;
-  const auto kind =
-      argc == 6 ? std::find_if(names.begin(), names.end(), [&](const char* n) { return std::strcmp(n, argv[1]) == 0; })
-                : names.end();
+  const auto kind = argc == 6 || argc == 7 ? std::find_if(names.begin(), names.end(),
+                                                          [&](const char* n) { return std::strcmp(n, argv[1]) == 0; })
+                                           : names.end();
   if (kind == names.end()) {
-    std::fprintf(stderr, "usage: make_clip KIND VERTICES FRAMES QUALITY GROUP\n");
+    std::fprintf(stderr, "usage: make_clip KIND VERTICES FRAMES QUALITY GROUP [BASE_LEVELS]\n");
     return 2;
   }
   const auto number = [&](int i) { return static_cast<std::uint32_t>(std::strtoul(argv[i], nullptr, 10)); };
@@ -26,6 +26,7 @@ int main(int argc, char** argv) {
   encoding.measure = false;  // the first frame is the reference: the clip is made in seconds
   encoding.encoder.quality = std::strtod(argv[4], nullptr);
   encoding.encoder.group = number(5);
+  if (argc == 7) encoding.encoder.base_levels = number(6);
   sac::EncodedClip result;
   const auto sink = [](std::span<const std::uint8_t> bytes) {
     return std::fwrite(bytes.data(), 1, bytes.size(), stdout) == bytes.size()
