@@ -143,7 +143,7 @@ Status ClipEncoder::Encode(const ByteSink& sink, EncodedClip& result) {
 
 Status ClipEncoder::EncodeFromChosenShapes(const ByteSink& sink, EncodedClip& result) {
   std::optional<ChosenShape> whole;
-  const Status status = ChooseShapes(settings_, whole);
+  Status status = ChooseShapes(settings_, whole);
   if (status.code() == StatusCode::kCancelled) return status;
   if (!whole || !whole->stream.is_whole()) return status.ok() || whole ? Encode(sink, result) : status;
   result = {};

@@ -74,8 +74,8 @@ struct EncodedClip {
 };
 
 // Encodes a clip, each of its meshes as a segment, decodes the stream again as it comes and measures it against the
-// clip. Without a frame rate in the
-// settings the clip's is taken. `sink` gets the bytes of the stream in order; an error of its own ends the encoding.
+// clip, which has to be at its first segment and is rewound before each encoding. Without a frame rate in the settings
+// the clip's is taken. `sink` gets the bytes of the stream in order; an error of its own ends the encoding.
 // Memory holds the frames of a group, whatever the length of the clip, and streams of up to 64 MB until it is known
 // which one is given out.
 //
