@@ -25,6 +25,7 @@ Command AddPoseCommand(CLI::App& app);
 Command AddSynthCommand(CLI::App& app);
 Command AddPlayCommand(CLI::App& app);
 Command AddSweepCommand(CLI::App& app);
+Command AddViewCommand(CLI::App& app);
 Command AddThinCommand(CLI::App& app);
 Command AddReferenceCommand(CLI::App& app);
 

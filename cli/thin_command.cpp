@@ -72,7 +72,8 @@ Command AddThinCommand(CLI::App& app) {
   AddNumber(*command, "--layers", options->layers, 1u, 0xffffffffu, "layers of each group to keep")->required();
   command->add_flag("--json", options->json, "print one line of JSON");
   command->footer(
-      "Streams have layers when they were encoded with --layers: first frames, coarse to fine in time, then detail.\n"
+      "Streams have layers when they were encoded with --base-levels: first frames, coarse to fine in time, then "
+      "detail.\n"
       "What is missing of a frame is what its neighbours say of it.\n\n"
       "Example:\n"
       "  sac thin clip.sac --layers 2 -o small.sac\n");

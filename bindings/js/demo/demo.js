@@ -155,5 +155,5 @@ addEventListener('drop', (e) => {
 
 // `sac view` serves the clip that it was given beside the page, and says so in the address.
 const asked = new URLSearchParams(location.search).get('clip');
-void show(asked ? { input: new URL(asked, document.baseURI).href, name: asked.split('/').pop() } : builtin);
+void show(asked ? { input: new URL(asked, document.baseURI).href, name: decodeURIComponent(asked.split('/').pop()) } : builtin);
 void SacPlayer;
