@@ -14,6 +14,7 @@
 #include "cli/component_count.h"
 #include "cli/component_output.h"
 #include "cli/distortion_report.h"
+#include "cli/given_option.h"
 #include "cli/number_option.h"
 #include "cli/progress.h"
 #include "cli/warning_report.h"
@@ -37,16 +38,24 @@ struct ComponentsOptions {
   bool json = false, strict = false;
 };
 
-Status CheckOptions(ComponentsOptions& o) {
+bool HasGltf(const ComponentsOptions& o) { return std::any_of(o.outputs.begin(), o.outputs.end(), IsGltfName); }
+
+Status CheckOptions(const CLI::App& command, ComponentsOptions& o) {
   for (const std::string& path : o.outputs) SAC_RETURN_IF_ERROR(CheckComponentOutput(path));
   if (o.count && o.error) return Status::InvalidArgument("--count and --error exclude each other");
-  if (!o.fit.empty() && (o.count || o.error || !o.strokes.empty() || !o.still.empty())) {
-    return Status::InvalidArgument("--fit takes the components of its file: no --count, --error, --stroke or --still");
+  if (!o.fit.empty()) {
+    const std::string idle =
+        FirstGiven(command, {"--count", "--error", "--domain", "--locality", "--positive", "--rest", "--stroke",
+                             "--still", "--near", "--far", "--iterations", "--field-memory"});
+    if (!idle.empty()) {
+      return Status::InvalidArgument(idle + " has no effect with --fit, which takes the components of its file as " +
+                                     "they are and finds weights alone");
+    }
   }
   if (o.count) o.settings.count = *o.count;
   if (!(o.settings.near < o.settings.far)) return Status::InvalidArgument("--near is not below --far");
   if (o.domain == "gradient") o.settings.domain = ComponentDomain::kGradient;
-  if (o.domain == "gradient" && std::any_of(o.outputs.begin(), o.outputs.end(), IsGltfName)) {
+  if (o.domain == "gradient" && HasGltf(o)) {
     return Status::InvalidArgument("a .glb cannot hold components of gradients, which are no morph targets");
   }
   std::vector<std::string> inputs = IsStreamName(o.inputs) ? o.inputs : FilesOfInput(o.inputs);
@@ -130,6 +139,9 @@ Status Decompose(const ComponentsOptions& o, ClipArgument& clip, Progress& progr
 Status Fit(const ComponentsOptions& o, ClipArgument& clip, Progress& progress, Outcome& outcome) {
   SparseComponents components;
   SAC_RETURN_IF_ERROR(ReadComponents(o.fit, components));
+  if (components.domain == ComponentDomain::kGradient && HasGltf(o)) {
+    return Status::InvalidArgument(o.fit + ": has components of gradients, which are no morph targets for a .glb");
+  }
   const Mesh& mesh = clip.reader->mesh();
   if (mesh.positions.size() == components.rest.size() && mesh.triangles != components.triangles) {
     outcome.warnings.push_back(clip.reader->name() + ": its triangles are not those of " + o.fit +
@@ -270,7 +282,8 @@ Command AddComponentsCommand(CLI::App& app) {
       "  sac components face.obj face.pc2 --positive -o face.npz -o face.glb -o face.csv\n"
       "  sac components dance.sac --domain gradient --count 20 -o dance.npz\n"
       "  sac components --fit face.npz other.obj other.pc2 -o other.npz\n");
-  return {command, [options] { return CheckOptions(*options); }, [options] { return Run(*options); }};
+  return {command, [options, command] { return CheckOptions(*command, *options); },
+          [options] { return Run(*options); }};
 }
 
 }  // namespace sac
