@@ -2,6 +2,7 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
@@ -15,25 +16,57 @@ namespace sac {
 // The shapes that components of deformation gradients pose, and how they change with the weights.
 class GradientPose {
  public:
-  // `components` must live as long. Errors as of PoissonReconstruction::Prepare().
+  // What a component has at a triangle.
+  struct Entry {
+    std::uint32_t component;
+    float values[9];
+  };
+
+  // Errors as of PoissonReconstruction::Prepare().
   Status Prepare(const SparseComponents& components, const PositionMatrix& rest);
 
-  // The channels of each triangle, triangles x 9.
-  Eigen::MatrixXd Channels(const Eigen::VectorXd& weights) const;
   PositionMatrix Shape(const Eigen::VectorXd& weights) const;
 
   // The derivatives of all positions with respect to each weight: vertices x 3 count, three columns a component.
   RowMatrix Derivatives(const Eigen::VectorXd& weights) const;
 
-  // The derivatives of the positions of `vertices` alone: 3 a vertex x count. They take one solution a vertex, not
-  // three a component.
-  Eigen::MatrixXd DerivativesAt(const Eigen::VectorXd& weights, std::span<const std::uint32_t> vertices) const;
+  // The derivatives of the sum of `y` (vertices x 3) times the positions with respect to each weight. It takes one
+  // solution of the system, not one a component.
+  Eigen::VectorXd DerivativesOfSum(const Eigen::VectorXd& weights, RowMatrix y) const;
 
   const PoissonReconstruction& poisson() const { return poisson_; }
 
  private:
-  const SparseComponents* components_ = nullptr;
+  friend class PosedVertices;
+
+  // Calls `take` for each triangle that a component has, with its number, its channels and its entries.
+  template <class Take>
+  void ForEachTriangle(const Eigen::VectorXd& weights, Take&& take) const;
+
+  std::size_t count_ = 0;
   PoissonReconstruction poisson_;
+  // By triangle, of those that a component has: entries_[first_[i]] to before entries_[first_[i + 1]] are of
+  // triangle_[i].
+  std::vector<std::uint32_t> triangle_;
+  std::vector<std::size_t> first_;
+  std::vector<Entry> entries_;
+};
+
+// A few vertices of the shapes that a GradientPose poses. Where they are follows from all gradients by a sum whose
+// factors are computed once, so that no system is solved for another set of weights.
+class PosedVertices {
+ public:
+  // `pose` must live as long.
+  PosedVertices(const GradientPose& pose, std::span<const std::uint32_t> vertices);
+
+  // How far the vertices are from where they are at rest, 3 a vertex, and with `derivatives` also how that changes with
+  // each weight, 3 a vertex x count.
+  Eigen::VectorXd Offsets(const Eigen::VectorXd& weights, Eigen::MatrixXd* derivatives = nullptr) const;
+
+ private:
+  const GradientPose& pose_;
+  Eigen::Index vertices_;
+  std::vector<Eigen::Vector3d> factors_;  // triangles of the pose x vertices
 };
 
 }  // namespace sac
