@@ -30,7 +30,7 @@ namespace {
 
 struct ComponentsOptions {
   std::vector<std::string> inputs, outputs, strokes;
-  std::string still, fit, domain = "displacement", rest = "first";
+  std::string still, fit, report, domain = "displacement", rest = "first";
   std::optional<std::uint32_t> count;
   std::optional<double> error;
   DecompositionSettings settings;
@@ -42,6 +42,7 @@ bool HasGltf(const ComponentsOptions& o) { return std::any_of(o.outputs.begin(),
 
 Status CheckOptions(const CLI::App& command, ComponentsOptions& o) {
   for (const std::string& path : o.outputs) SAC_RETURN_IF_ERROR(CheckComponentOutput(path));
+  if (o.outputs.empty() && o.report.empty()) return Status::InvalidArgument("--output or --report is required");
   if (o.count && o.error) return Status::InvalidArgument("--count and --error exclude each other");
   if (!o.fit.empty()) {
     const std::string idle =
@@ -64,7 +65,9 @@ Status CheckOptions(const CLI::App& command, ComponentsOptions& o) {
     if (!path.empty()) inputs.push_back(path);
   }
   o.settings.field_memory = std::size_t{o.field_megabytes} << 20;
-  return CheckOverwriting(inputs, o.outputs);
+  std::vector<std::string> outputs = o.outputs;
+  if (!o.report.empty()) outputs.push_back(PageOfReport(o.report));
+  return CheckOverwriting(inputs, outputs);
 }
 
 // Reads what the settings name files for.
@@ -215,7 +218,8 @@ Status Run(const ComponentsOptions& o) {
     }
     progress.Begin("writing");
     if (o.strict) SAC_RETURN_IF_ERROR(TellWarnings(outcome.warnings, true));
-    SAC_RETURN_IF_ERROR(WriteComponentOutputs(outcome.components, o.outputs, outcome.rounding));
+    SAC_RETURN_IF_ERROR(WriteComponentOutputs(outcome.components, o.outputs, o.report,
+                                              {clip.reader->name(), outcome.error}, outcome.rounding));
   }
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   SAC_RETURN_IF_ERROR(TellWarnings(outcome.warnings, false));
@@ -269,8 +273,12 @@ Command AddComponentsCommand(CLI::App& app) {
       ->add_option("-o,--output", options->outputs,
                    "c.npz (everything, also for numpy), c.glb (morph targets and their animation), c.csv (weights); "
                    "may be repeated")
-      ->required()
       ->option_text("FILE");
+  command
+      ->add_option("--report", options->report,
+                   "a directory for components.html, one page with all in it: each component as colours on the mesh, "
+                   "its curve, and a slider that moves the mesh")
+      ->option_text("DIR");
   AddShape(*command, *options);
   command->add_option("--fit", options->fit, "find the weights of the clip for the components of this .npz instead")
       ->option_text("FILE");
