@@ -265,7 +265,7 @@ Eigen::VectorXd ComponentModel::Drag(std::span<const DragTarget> targets, const 
   }
   Eigen::MatrixXd b = DerivativesAt(targets);
   std::optional<PosedVertices> posed;
-  if (gradient()) posed.emplace(pose_, vertices);
+  if (gradient()) posed.emplace(pose_, vertices, start);
   // How far the vertices are from their targets; `b` becomes how that changes.
   const auto miss = [&](const Eigen::VectorXd& w) {
     return Eigen::VectorXd(wanted - (posed ? posed->Offsets(w, &b) : Eigen::VectorXd(b * w)));

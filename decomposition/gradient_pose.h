@@ -39,25 +39,36 @@ class GradientPose {
  private:
   friend class PosedVertices;
 
-  // Calls `take` for each triangle that a component has, with its number, its channels and its entries.
-  template <class Take>
-  void ForEachTriangle(const Eigen::VectorXd& weights, Take&& take) const;
+  // The components at each triangle, or at each group of triangles: entries[first[i]] to before entries[first[i + 1]]
+  // are those of i.
+  struct Cells {
+    std::vector<std::size_t> first = {0};
+    std::vector<Entry> entries;
+    std::size_t size() const { return first.size() - 1; }
+    std::span<const Entry> of(std::size_t i) const { return {entries.data() + first[i], first[i + 1] - first[i]}; }
+    // Calls `take` for each, with its number, its channels and its entries.
+    template <class Take>
+    void ForEach(const Eigen::VectorXd& weights, Take&& take) const;
+  };
+
+  void PrepareGroups(const SparseComponents& components);
 
   std::size_t count_ = 0;
   PoissonReconstruction poisson_;
-  // By triangle, of those that a component has: entries_[first_[i]] to before entries_[first_[i + 1]] are of
-  // triangle_[i].
-  std::vector<std::uint32_t> triangle_;
-  std::vector<std::size_t> first_;
-  std::vector<Entry> entries_;
+  Cells cells_;                          // the triangles that a component has
+  std::vector<std::uint32_t> triangle_;  // of each of these cells
+  // Neighbours whose components are nearly the same, as if they were: what they have is the mean.
+  Cells groups_;
+  std::vector<std::uint32_t> group_;  // of each of the triangles' cells
 };
 
 // A few vertices of the shapes that a GradientPose poses. Where they are follows from all gradients by a sum whose
-// factors are computed once, so that no system is solved for another set of weights.
+// factors are computed once, so that no system is solved for another set of weights. Triangles are taken in groups:
+// exact is what is said of the weights that it was made for.
 class PosedVertices {
  public:
   // `pose` must live as long.
-  PosedVertices(const GradientPose& pose, std::span<const std::uint32_t> vertices);
+  PosedVertices(const GradientPose& pose, std::span<const std::uint32_t> vertices, const Eigen::VectorXd& weights);
 
   // How far the vertices are from where they are at rest, 3 a vertex, and with `derivatives` also how that changes with
   // each weight, 3 a vertex x count.
@@ -66,7 +77,8 @@ class PosedVertices {
  private:
   const GradientPose& pose_;
   Eigen::Index vertices_;
-  std::vector<Eigen::Vector3d> factors_;  // triangles of the pose x vertices
+  std::vector<Eigen::Vector3d> factors_;  // groups x vertices
+  Eigen::VectorXd correction_;            // what the groups miss, 3 a vertex
 };
 
 }  // namespace sac
