@@ -14,6 +14,7 @@
 #include "cli/component_count.h"
 #include "cli/component_output.h"
 #include "cli/distortion_report.h"
+#include "cli/given_option.h"
 #include "cli/number_option.h"
 #include "cli/progress.h"
 #include "cli/warning_report.h"
@@ -29,7 +30,7 @@ namespace {
 
 struct ComponentsOptions {
   std::vector<std::string> inputs, outputs, strokes;
-  std::string still, fit, domain = "displacement", rest = "first";
+  std::string still, fit, report, domain = "displacement", rest = "first";
   std::optional<std::uint32_t> count;
   std::optional<double> error;
   DecompositionSettings settings;
@@ -37,16 +38,25 @@ struct ComponentsOptions {
   bool json = false, strict = false;
 };
 
-Status CheckOptions(ComponentsOptions& o) {
+bool HasGltf(const ComponentsOptions& o) { return std::any_of(o.outputs.begin(), o.outputs.end(), IsGltfName); }
+
+Status CheckOptions(const CLI::App& command, ComponentsOptions& o) {
   for (const std::string& path : o.outputs) SAC_RETURN_IF_ERROR(CheckComponentOutput(path));
+  if (o.outputs.empty() && o.report.empty()) return Status::InvalidArgument("--output or --report is required");
   if (o.count && o.error) return Status::InvalidArgument("--count and --error exclude each other");
-  if (!o.fit.empty() && (o.count || o.error || !o.strokes.empty() || !o.still.empty())) {
-    return Status::InvalidArgument("--fit takes the components of its file: no --count, --error, --stroke or --still");
+  if (!o.fit.empty()) {
+    const std::string idle =
+        FirstGiven(command, {"--count", "--error", "--domain", "--locality", "--positive", "--rest", "--stroke",
+                             "--still", "--near", "--far", "--iterations", "--field-memory"});
+    if (!idle.empty()) {
+      return Status::InvalidArgument(idle + " has no effect with --fit, which takes the components of its file as " +
+                                     "they are and finds weights alone");
+    }
   }
   if (o.count) o.settings.count = *o.count;
   if (!(o.settings.near < o.settings.far)) return Status::InvalidArgument("--near is not below --far");
   if (o.domain == "gradient") o.settings.domain = ComponentDomain::kGradient;
-  if (o.domain == "gradient" && std::any_of(o.outputs.begin(), o.outputs.end(), IsGltfName)) {
+  if (o.domain == "gradient" && HasGltf(o)) {
     return Status::InvalidArgument("a .glb cannot hold components of gradients, which are no morph targets");
   }
   std::vector<std::string> inputs = IsStreamName(o.inputs) ? o.inputs : FilesOfInput(o.inputs);
@@ -55,7 +65,9 @@ Status CheckOptions(ComponentsOptions& o) {
     if (!path.empty()) inputs.push_back(path);
   }
   o.settings.field_memory = std::size_t{o.field_megabytes} << 20;
-  return CheckOverwriting(inputs, o.outputs);
+  std::vector<std::string> outputs = o.outputs;
+  if (!o.report.empty()) outputs.push_back(PageOfReport(o.report));
+  return CheckOverwriting(inputs, outputs);
 }
 
 // Reads what the settings name files for.
@@ -130,6 +142,9 @@ Status Decompose(const ComponentsOptions& o, ClipArgument& clip, Progress& progr
 Status Fit(const ComponentsOptions& o, ClipArgument& clip, Progress& progress, Outcome& outcome) {
   SparseComponents components;
   SAC_RETURN_IF_ERROR(ReadComponents(o.fit, components));
+  if (components.domain == ComponentDomain::kGradient && HasGltf(o)) {
+    return Status::InvalidArgument(o.fit + ": has components of gradients, which are no morph targets for a .glb");
+  }
   const Mesh& mesh = clip.reader->mesh();
   if (mesh.positions.size() == components.rest.size() && mesh.triangles != components.triangles) {
     outcome.warnings.push_back(clip.reader->name() + ": its triangles are not those of " + o.fit +
@@ -203,7 +218,8 @@ Status Run(const ComponentsOptions& o) {
     }
     progress.Begin("writing");
     if (o.strict) SAC_RETURN_IF_ERROR(TellWarnings(outcome.warnings, true));
-    SAC_RETURN_IF_ERROR(WriteComponentOutputs(outcome.components, o.outputs, outcome.rounding));
+    SAC_RETURN_IF_ERROR(WriteComponentOutputs(outcome.components, o.outputs, o.report,
+                                              {clip.reader->name(), outcome.error}, outcome.rounding));
   }
   outcome.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   SAC_RETURN_IF_ERROR(TellWarnings(outcome.warnings, false));
@@ -257,8 +273,12 @@ Command AddComponentsCommand(CLI::App& app) {
       ->add_option("-o,--output", options->outputs,
                    "c.npz (everything, also for numpy), c.glb (morph targets and their animation), c.csv (weights); "
                    "may be repeated")
-      ->required()
       ->option_text("FILE");
+  command
+      ->add_option("--report", options->report,
+                   "a directory for components.html, one page with all in it: each component as colours on the mesh, "
+                   "its curve, and a slider that moves the mesh")
+      ->option_text("DIR");
   AddShape(*command, *options);
   command->add_option("--fit", options->fit, "find the weights of the clip for the components of this .npz instead")
       ->option_text("FILE");
@@ -270,7 +290,8 @@ Command AddComponentsCommand(CLI::App& app) {
       "  sac components face.obj face.pc2 --positive -o face.npz -o face.glb -o face.csv\n"
       "  sac components dance.sac --domain gradient --count 20 -o dance.npz\n"
       "  sac components --fit face.npz other.obj other.pc2 -o other.npz\n");
-  return {command, [options] { return CheckOptions(*options); }, [options] { return Run(*options); }};
+  return {command, [options, command] { return CheckOptions(*command, *options); },
+          [options] { return Run(*options); }};
 }
 
 }  // namespace sac

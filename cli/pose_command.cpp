@@ -7,6 +7,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <set>
 #include <span>
 #include <string>
 #include <utility>
@@ -14,12 +15,15 @@
 
 #include "cli/clip_argument.h"
 #include "cli/commands.h"
+#include "cli/given_option.h"
 #include "cli/number_option.h"
 #include "cli/posed_output.h"
 #include "cli/warning_report.h"
+#include "files/cache_file.h"
 #include "files/component_file.h"
 #include "files/component_tables.h"
 #include "files/overwriting.h"
+#include "files/vat_writer.h"
 #include "sac/component_poser.h"
 
 namespace sac {
@@ -52,7 +56,33 @@ bool ParseAssignment(const std::string& text, Assignment& assignment) {
   return result.ec == std::errc() && result.ptr == end && std::isfinite(assignment.value);
 }
 
-Status CheckOptions(const PoseOptions& o) {
+// What is given but has nothing to act on.
+Status CheckIdle(const CLI::App& command, const PoseOptions& o) {
+  const auto has_no_effect = [](const std::string& name, const std::string& why) {
+    return Status::InvalidArgument(name + " has no effect " + why);
+  };
+  if (!o.edits() && !o.clip.empty()) {
+    return has_no_effect("--clip", "without --gain, --offset or --curve, which say what is edited in it");
+  }
+  const std::string of_drag = FirstGiven(command, {"--frame", "--price", "--many", "--bounded"});
+  if (o.drag.empty() && !of_drag.empty()) {
+    return has_no_effect(of_drag, "without --drag: it says how weights are found for what is dragged");
+  }
+  if (o.many && o.price == 0.0) return has_no_effect("--many", "at --price 0: no component costs anything");
+  if (o.no_track && o.weights.empty()) {
+    return has_no_effect("--no-track", o.edits() ? "on edits, which leave the motion of the whole as it is"
+                                                 : "on --drag: the shape stands where its --frame does");
+  }
+  if (command.count("--quality") > 0 && !IsStreamName({o.output})) {
+    return has_no_effect("--quality", "on " + o.output + ", which is no .sac stream");
+  }
+  if (o.force && !IsCacheName(o.output) && !IsVatName(o.output)) {
+    return has_no_effect("--force", "on " + o.output + ", which has no other file beside it");
+  }
+  return Status::Ok();
+}
+
+Status CheckOptions(const CLI::App& command, const PoseOptions& o) {
   const int ways = (o.weights.empty() ? 0 : 1) + (o.drag.empty() ? 0 : 1) + (o.edits() ? 1 : 0);
   if (ways != 1) return Status::InvalidArgument("one of --weights, --drag, or --gain, --offset and --curve is needed");
   for (const auto& [name, texts] : {std::pair{"--gain", &o.gains}, std::pair{"--offset", &o.offsets}}) {
@@ -69,11 +99,8 @@ Status CheckOptions(const PoseOptions& o) {
       return Status::InvalidArgument("--curve: '" + text + "' is no component and file such as 7=curve.csv");
     }
   }
-  if (!o.edits() && !o.clip.empty()) return Status::InvalidArgument("--clip is for --gain, --offset and --curve");
-  if (o.drag.empty() && (o.frame || o.price || o.many || o.bounded)) {
-    return Status::InvalidArgument("--frame, --price, --many and --bounded are for --drag");
-  }
   SAC_RETURN_IF_ERROR(CheckPosedOutput(o.output, !o.drag.empty()));
+  SAC_RETURN_IF_ERROR(CheckIdle(command, o));
   std::vector<std::string> inputs = o.clip.empty() || IsStreamName(o.clip) ? o.clip : FilesOfInput(o.clip);
   inputs.push_back(o.components);
   for (const std::string& path : {o.weights, o.drag}) {
@@ -201,22 +228,30 @@ Status PoseDrag(const PoseOptions& o, const ComponentPoser& poser) {
 
 Status MakeEdits(const PoseOptions& o, const SparseComponents& components, std::vector<ComponentEdit>& edits) {
   edits.assign(components.components.size(), {});
-  const auto assign = [&](const std::vector<std::string>& texts, double ComponentEdit::*member) -> Status {
+  // The component that `text` means, which an option may name once, by its number or its name.
+  std::set<std::pair<std::string, std::size_t>> seen;
+  const auto find = [&](const std::string& option, const std::string& text, std::size_t& k) -> Status {
+    SAC_RETURN_IF_ERROR(FindComponent(o, components, text, k));
+    if (seen.emplace(option, k).second) return Status::Ok();
+    return Status::InvalidArgument(option + ": " + text + " is there twice, and the second would replace the first");
+  };
+  const auto assign = [&](const std::string& option, const std::vector<std::string>& texts,
+                          double ComponentEdit::*member) -> Status {
     for (const std::string& text : texts) {
       Assignment assignment;
       std::size_t k = 0;
       if (!ParseAssignment(text, assignment)) return Status::InvalidArgument(text);
-      SAC_RETURN_IF_ERROR(FindComponent(o, components, assignment.component, k));
+      SAC_RETURN_IF_ERROR(find(option, assignment.component, k));
       edits[k].*member = assignment.value;
     }
     return Status::Ok();
   };
-  SAC_RETURN_IF_ERROR(assign(o.gains, &ComponentEdit::gain));
-  SAC_RETURN_IF_ERROR(assign(o.offsets, &ComponentEdit::offset));
+  SAC_RETURN_IF_ERROR(assign("--gain", o.gains, &ComponentEdit::gain));
+  SAC_RETURN_IF_ERROR(assign("--offset", o.offsets, &ComponentEdit::offset));
   for (const std::string& text : o.curves) {
     const std::size_t equals = text.rfind('=');
     std::size_t k = 0;
-    SAC_RETURN_IF_ERROR(FindComponent(o, components, text.substr(0, equals), k));
+    SAC_RETURN_IF_ERROR(find("--curve", text.substr(0, equals), k));
     SAC_RETURN_IF_ERROR(ReadWeights(text.substr(equals + 1), 1, edits[k].curve));
   }
   return Status::Ok();
@@ -299,7 +334,8 @@ Command AddPoseCommand(CLI::App& app) {
       "  sac pose face.npz --weights face.csv -o face2.pc2\n"
       "  sac pose face.npz --drag corners.txt --frame 12 -o smile.obj\n"
       "  sac pose face.npz --gain 7=2 --clip face.obj face.pc2 -o face.sac\n");
-  return {command, [options] { return CheckOptions(*options); }, [options] { return Run(*options); }};
+  return {command, [options, command] { return CheckOptions(*command, *options); },
+          [options] { return Run(*options); }};
 }
 
 }  // namespace sac

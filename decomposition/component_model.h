@@ -2,8 +2,11 @@
 #pragma once
 
 #include <Eigen/Core>
+#include <Eigen/SparseCore>
 #include <memory>
+#include <mutex>
 #include <span>
+#include <vector>
 
 #include "decomposition/gradient_pose.h"
 #include "decomposition/rest_alignment.h"
@@ -34,16 +37,27 @@ class ComponentModel {
   double low() const { return components_.positive ? 0 : -1; }
   bool gradient() const { return components_.domain == ComponentDomain::kGradient; }
   void PrepareNormal();
+  void PrepareSample();
+  Eigen::VectorXd FitSample(const PositionMatrix& aligned) const;
   Eigen::VectorXd FitChannels(const Eigen::MatrixXd& values) const;
   Eigen::VectorXd FitDisplacements(const PositionMatrix& target, RigidPose& pose) const;
   Eigen::VectorXd FitGradients(const PositionMatrix& target, RigidPose& pose) const;
-  Eigen::MatrixXd DerivativesAt(const Eigen::VectorXd& weights, std::span<const DragTarget> targets) const;
+  const Eigen::MatrixXd& PositionNormal() const;
+  Eigen::MatrixXd DerivativesAt(std::span<const DragTarget> targets) const;
 
   SparseComponents components_;
   std::unique_ptr<RestAlignment> alignment_;
   GradientPose pose_;       // gradient domain only
   Eigen::VectorXd mass_;    // of nodes
   Eigen::MatrixXd normal_;  // C m C^T, count x count
+  // Of gradients: the triangles where components are largest, and the components there, 9 a triangle x count, times the
+  // root of the mass.
+  std::vector<Triangle> sample_;
+  Eigen::VectorXd sample_roots_;
+  Eigen::SparseMatrix<double> sample_values_;
+  Eigen::MatrixXd sample_normal_;
+  mutable std::once_flag position_normal_made_;
+  mutable Eigen::MatrixXd position_normal_;  // see PositionNormal()
 };
 
 }  // namespace sac

@@ -13,6 +13,20 @@
 namespace sac {
 namespace {
 
+Status CheckFinite(std::span<const float> weights) {
+  if (std::all_of(weights.begin(), weights.end(), [](float w) { return std::isfinite(w); })) return Status::Ok();
+  return Status::InvalidArgument("a weight is not finite");
+}
+
+Status CheckPose(const RigidPose& pose) {
+  const auto finite = [](double x) { return std::isfinite(x); };
+  if (std::all_of(pose.rotation.begin(), pose.rotation.end(), finite) &&
+      std::all_of(pose.translation.begin(), pose.translation.end(), finite)) {
+    return Status::Ok();
+  }
+  return Status::InvalidArgument("the pose is not finite");
+}
+
 Status CheckComponent(const SparseComponents& c, std::size_t k) {
   const SparseComponent& component = c.components[k];
   const auto fails = [&](const char* what) {
@@ -42,9 +56,8 @@ Status CheckComponents(const SparseComponents& c) {
   if (c.weights.size() != c.frames() * c.components.size()) {
     return Status::InvalidArgument("the weights are not frames x components");
   }
-  for (const float w : c.weights) {
-    if (!std::isfinite(w)) return Status::InvalidArgument("a weight is not finite");
-  }
+  SAC_RETURN_IF_ERROR(CheckFinite(c.weights));
+  for (const RigidPose& pose : c.track) SAC_RETURN_IF_ERROR(CheckPose(pose));
   for (std::size_t k = 0; k < c.components.size(); ++k) SAC_RETURN_IF_ERROR(CheckComponent(c, k));
   return Status::Ok();
 }
@@ -92,9 +105,8 @@ const SparseComponents& ComponentPoser::components() const { return impl_->model
 
 Status ComponentPoser::Compose(std::span<const float> weights, const RigidPose& pose, Positions& positions) const {
   SAC_RETURN_IF_ERROR(CheckWeights(weights.size(), components().components.size()));
-  for (const float w : weights) {
-    if (!std::isfinite(w)) return Status::InvalidArgument("a weight is not finite");
-  }
+  SAC_RETURN_IF_ERROR(CheckFinite(weights));
+  SAC_RETURN_IF_ERROR(CheckPose(pose));
   const PositionMatrix shape = impl_->model.Shape(VectorOf(weights));
   const bool moves = pose.rotation != RigidPose{}.rotation || pose.translation != RigidPose{}.translation;
   positions = PositionsOf(moves ? Moved(shape, pose) : shape);
@@ -116,7 +128,11 @@ Status ComponentPoser::Drag(std::span<const DragTarget> targets, const DragSetti
                             std::vector<float>& weights) const {
   const std::size_t count = components().components.size();
   if (!settings.start.empty()) SAC_RETURN_IF_ERROR(CheckWeights(settings.start.size(), count));
-  if (!(settings.price >= 0)) return Status::InvalidArgument("the price of a drag is negative");
+  SAC_RETURN_IF_ERROR(CheckFinite(settings.start));
+  SAC_RETURN_IF_ERROR(CheckPose(settings.pose));
+  if (!(settings.price >= 0) || !std::isfinite(settings.price)) {
+    return Status::InvalidArgument("the price of a drag is not a number of at least 0");
+  }
   for (const DragTarget& target : targets) {
     if (target.vertex >= components().rest.size()) {
       return Status::InvalidArgument("there is no vertex " + std::to_string(target.vertex) + " among " +

@@ -139,28 +139,37 @@ void PoissonReconstruction::SolveOffsets(RowMatrix& b) const {
   Place(b);
 }
 
-// The transpose of SolveOffsets(): first that of placing the centroid, then the factor, which is symmetric.
+// First the transpose of placing the centroids, then the factor, which is symmetric.
+void PoissonReconstruction::SolveTransposed(RowMatrix& y) const {
+  RowMatrix sum = RowMatrix::Zero(pieces_, y.cols());
+  for (std::size_t v = 0; v < piece_.size(); ++v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    if (still_[v] != 0) y.row(row).setZero();
+    sum.row(piece_[v]) += y.row(row);
+  }
+  for (std::size_t v = 0; v < piece_.size(); ++v) {
+    const auto row = static_cast<Eigen::Index>(v);
+    if (held_[piece_[v]] == 0) y.row(row) -= mass_[row] / piece_mass_[piece_[v]] * sum.row(piece_[v]);
+  }
+  factor_.SolveInPlace(y);
+  for (std::size_t v = 0; v < still_.size(); ++v) {
+    if (still_[v] != 0) y.row(static_cast<Eigen::Index>(v)).setZero();
+  }
+}
+
 RowMatrix PoissonReconstruction::SolutionRows(std::span<const std::uint32_t> vertices) const {
   RowMatrix rows = RowMatrix::Zero(rest_.rows(), static_cast<Eigen::Index>(vertices.size()));
-  for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const auto column = static_cast<Eigen::Index>(i);
-    const std::uint32_t v = vertices[i], piece = piece_[v];
-    if (still_[v] != 0) continue;
-    rows(v, column) = 1;
-    if (held_[piece] != 0) continue;
-    for (std::size_t u = 0; u < piece_.size(); ++u) {
-      const auto row = static_cast<Eigen::Index>(u);
-      if (piece_[u] == piece) rows(row, column) -= mass_[row] / piece_mass_[piece];
-    }
-  }
-  factor_.SolveInPlace(rows);
-  for (std::size_t v = 0; v < still_.size(); ++v) {
-    if (still_[v] != 0) rows.row(static_cast<Eigen::Index>(v)).setZero();
-  }
+  for (std::size_t i = 0; i < vertices.size(); ++i) rows(vertices[i], static_cast<Eigen::Index>(i)) = 1;
+  SolveTransposed(rows);
   return rows;
 }
 
 // Solved for the offset from the rest shape, whose gradient is the identity; this keeps the accuracy of still vertices.
+PositionMatrix PoissonReconstruction::ReconstructOffsets(RowMatrix& b) const {
+  SolveOffsets(b);
+  return rest_ + b;
+}
+
 PositionMatrix PoissonReconstruction::Reconstruct(const Eigen::MatrixXd& q) const {
   RowMatrix b = RowMatrix::Zero(rest_.rows(), 3);
   for (std::size_t j = 0; j < triangles_.size(); ++j) {
@@ -168,8 +177,7 @@ PositionMatrix PoissonReconstruction::Reconstruct(const Eigen::MatrixXd& q) cons
     for (int a = 0; a < 9; ++a) channels[a] = q(static_cast<Eigen::Index>(j), a);
     AddGradient(j, DeformationGradient(channels) - Eigen::Matrix3d::Identity(), b, 0);
   }
-  SolveOffsets(b);
-  return rest_ + b;
+  return ReconstructOffsets(b);
 }
 
 }  // namespace sac

@@ -24,6 +24,9 @@ class PoissonReconstruction {
 
   // The positions for the channels `q` (triangles x 9) of each triangle's deformation gradient.
   PositionMatrix Reconstruct(const Eigen::MatrixXd& q) const;
+  // The same for right sides that AddGradient() has made of what each gradient differs from the identity by; `b`, which
+  // is vertices x 3, becomes the offsets.
+  PositionMatrix ReconstructOffsets(RowMatrix& b) const;
 
   // The right side of one triangle's gradient J, or of a derivative of it, added to the 3 columns from `first` of `b`.
   void AddGradient(std::size_t triangle, const Eigen::Matrix3d& j, RowMatrix& b, Eigen::Index first) const;
@@ -31,10 +34,21 @@ class PoissonReconstruction {
   // what is still, at 0. The columns are those of derivatives.
   void SolveOffsets(RowMatrix& b) const;
 
+  // The transpose of SolveOffsets(), in place: what a change of the right side at each vertex adds to the sum of `y`
+  // times the offsets.
+  void SolveTransposed(RowMatrix& y) const;
   // What the position of each of `vertices` is of all right sides, vertices x vertices.size().
   RowMatrix SolutionRows(std::span<const std::uint32_t> vertices) const;
-  // The integral over a triangle of the gradient of column `column` of SolutionRows(): a gradient J there moves that
-  // vertex by J times this.
+  // The integral over a triangle of the gradient of three columns from `first` of what SolveTransposed() gives, each a
+  // row: a change D of the gradient there adds the sum of the products of its entries and these.
+  Eigen::Matrix3d GradientOfRows(std::size_t triangle, const RowMatrix& rows, Eigen::Index first) const {
+    const Triangle& t = triangles_[triangle];
+    Eigen::Matrix3d corners;
+    corners << rows.block<1, 3>(t[0], first).transpose(), rows.block<1, 3>(t[1], first).transpose(),
+        rows.block<1, 3>(t[2], first).transpose();
+    return areas_[static_cast<Eigen::Index>(triangle)] * corners * hats_[triangle].transpose();
+  }
+  // The same of one column of SolutionRows(): a gradient J there moves that vertex by J times this.
   Eigen::Vector3d GradientOfRow(std::size_t triangle, const RowMatrix& rows, Eigen::Index column) const {
     const Triangle& t = triangles_[triangle];
     const Eigen::Vector3d corners(rows(t[0], column), rows(t[1], column), rows(t[2], column));

@@ -44,20 +44,20 @@ RestAlignment::RestAlignment(const PositionMatrix& rest, std::span<const Triangl
     extent_ = (rest.colwise().maxCoeff() - rest.colwise().minCoeff()).norm();
   }
   if (!(extent_ > 0)) extent_ = 1;
-  centre_ = mass_.transpose() * rest;
 }
 
-PositionMatrix RestAlignment::Align(const PositionMatrix& frame, RigidPose& pose) const {
-  const Eigen::RowVector3d centre = mass_.transpose() * frame;
+PositionMatrix RestAlignment::AlignOnto(const PositionMatrix& shape, const PositionMatrix& frame,
+                                        RigidPose& pose) const {
+  const Eigen::RowVector3d centre = mass_.transpose() * frame, shape_centre = mass_.transpose() * shape;
   const PositionMatrix about = frame.rowwise() - centre;
-  const Eigen::Matrix3d covariance = about.transpose() * mass_.asDiagonal() * (rest_.rowwise() - centre_);
+  const Eigen::Matrix3d covariance = about.transpose() * mass_.asDiagonal() * (shape.rowwise() - shape_centre);
   const Eigen::Matrix3d r = covariance.norm() > 0 ? PolarRotation(covariance) : Eigen::Matrix3d::Identity();
-  const Eigen::RowVector3d move = centre - centre_ * r.transpose();
+  const Eigen::RowVector3d move = centre - shape_centre * r.transpose();
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) pose.rotation[static_cast<std::size_t>(3 * i + j)] = r(i, j);
     pose.translation[static_cast<std::size_t>(i)] = move[i];
   }
-  return (about * r).rowwise() + centre_;
+  return (about * r).rowwise() + shape_centre;
 }
 
 PositionMatrix Moved(const PositionMatrix& positions, const RigidPose& pose) {

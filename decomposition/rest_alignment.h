@@ -23,7 +23,9 @@ class RestAlignment {
   RestAlignment(const PositionMatrix& rest, std::span<const Triangle> triangles);
 
   // Returns `frame` moved onto the rest shape; `pose` becomes the motion that takes it back.
-  PositionMatrix Align(const PositionMatrix& frame, RigidPose& pose) const;
+  PositionMatrix Align(const PositionMatrix& frame, RigidPose& pose) const { return AlignOnto(rest_, frame, pose); }
+  // The same onto another shape, with the masses of the rest shape.
+  PositionMatrix AlignOnto(const PositionMatrix& shape, const PositionMatrix& frame, RigidPose& pose) const;
 
   const PositionMatrix& rest() const { return rest_; }
   // One a vertex, of sum 1; never 0.
@@ -34,7 +36,6 @@ class RestAlignment {
  private:
   PositionMatrix rest_;
   Eigen::VectorXd mass_;
-  Eigen::RowVector3d centre_;
   double extent_;
 };
 

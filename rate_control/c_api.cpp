@@ -5,39 +5,14 @@
 #include <exception>
 #include <string>
 
-#include "codec/c_status.h"
 #include "codec/encode/c_input.h"
+#include "geometry/c_status.h"
+#include "geometry/frame_source_reader.h"
 #include "sac/clip_encoder.h"
 #include "sac/sac_encode.h"
 
 namespace sac {
 namespace {
-
-// A clip whose frames the caller's C functions read.
-class SourceReader : public ClipReader {
- public:
-  SourceReader(Mesh mesh, const sac_frame_source& source) : mesh_(std::move(mesh)), source_(source) {}
-
-  const Mesh& mesh() const override { return mesh_; }
-  Status Next(Positions& frame, bool& end) override {
-    int ended = 0;
-    frame_.resize(mesh_.positions.size());
-    float none[3];
-    float* const positions = frame_.empty() ? none : frame_.data()->data();
-    if (source_.next(source_.user, positions, &ended) != 0) return Status::InvalidArgument("the source ended it");
-    end = ended != 0;
-    if (!end) frame = frame_;
-    return Status::Ok();
-  }
-  Status Rewind() override {
-    return source_.rewind(source_.user) == 0 ? Status::Ok() : Status::InvalidArgument("the source cannot be rewound");
-  }
-
- private:
-  Mesh mesh_;
-  Positions frame_;
-  const sac_frame_source source_;
-};
 
 void Tell(const EncodedClip& encoded, sac_clip_details& details) {
   if (details.order != nullptr) std::copy(encoded.order.begin(), encoded.order.end(), details.order);
@@ -65,7 +40,7 @@ Status Encode(const sac_input_mesh* mesh, const sac_frame_source* source, const 
   }
   Mesh first;
   SAC_RETURN_IF_ERROR(ReadMesh(mesh, first));
-  SourceReader clip(std::move(first), *source);
+  FrameSourceReader clip(std::move(first), *source);
   const auto write = [&](std::span<const std::uint8_t> bytes) {
     return sink(sink_user, bytes.data(), bytes.size()) == 0 ? Status::Ok()
                                                             : Status::InvalidArgument("the sink ended it");

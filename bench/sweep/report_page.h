@@ -8,7 +8,4 @@ namespace sac {
 // The HTML of a report: page.html with page.js, Chart.js, three.js and `json` in it.
 std::string ReportPage(const std::string& json);
 
-// The Base64 encoding of `bytes` (RFC 4648).
-std::string Base64(const std::string& bytes);
-
 }  // namespace sac

@@ -13,6 +13,7 @@
 #include "bench/sweep/result_file.h"
 #include "cli/distortion_report.h"
 #include "files/output_file.h"
+#include "report/page.h"
 #include "sac/version.h"
 
 namespace sac {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <string>
 
-#include "codec/c_status.h"
+#include "geometry/c_status.h"
 #include "sac/decoder.h"
 #include "sac/sac.h"
 #include "sac/version.h"

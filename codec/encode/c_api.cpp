@@ -8,8 +8,8 @@
 #include <utility>
 #include <vector>
 
-#include "codec/c_status.h"
 #include "codec/encode/c_input.h"
+#include "geometry/c_status.h"
 #include "sac/encoder.h"
 #include "sac/sac_encode.h"
 

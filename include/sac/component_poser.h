@@ -42,8 +42,9 @@ class ComponentPoser {
 
   const SparseComponents& components() const;
 
-  // The rest shape deformed by `weights`, one a component, finite, then moved by `pose`; model units. A vertex that no
-  // component of weight other than 0 has stays exactly where it is (displacement domain).
+  // The rest shape deformed by `weights`, one a component, then moved by `pose`; model units. A vertex that no
+  // component of weight other than 0 has stays exactly where it is (displacement domain). kInvalidArgument for what is
+  // not finite.
   Status Compose(std::span<const float> weights, const RigidPose& pose, Positions& positions) const;
 
   // The weights within the bounds and the pose with which Compose() comes nearest to `shape`, in the least squares
@@ -70,6 +71,11 @@ struct ComponentEdit {
   double gain = 1, offset = 0;
   std::vector<float> curve;  // empty, or one a frame
 };
+
+// Edits the positions of one frame of the clip whose weights the poser's components have, as EditedClip does.
+// kInvalidArgument for a frame that is not there, and for edits that EditedClip refuses.
+Status EditFrame(const ComponentPoser& poser, std::span<const ComponentEdit> edits, std::uint32_t frame,
+                 Positions& positions);
 
 // A clip whose performance is edited by components. Each frame moves by the difference of what its edited and its own
 // weights pose, so that whatever the components do not say stays as it was captured, and a clip without edits stays as

@@ -172,6 +172,57 @@ TEST_F(ComponentsTest, Refuses) {
   ExpectFailure({"pose", "c.npz", "--weights", "w.csv", "-o", "x.pc2"}, 1, "w.csv:1: 'nan' is no finite number");
 }
 
+// An option that would be ignored is a mistake of the user, who is told why.
+TEST_F(ComponentsTest, RefusesOptionsWithoutEffect) {
+  const std::string end = " (see sac components --help)", pose_end = " (see sac pose --help)";
+  Good({"components", "in.obj", "in.pc2", "-o", "c.npz", "-o", "c.csv", "--count", "3"});
+  for (const std::vector<std::string>& idle : std::vector<std::vector<std::string>>{{"--count", "3"},
+                                                                                    {"--error", "3"},
+                                                                                    {"--domain", "displacement"},
+                                                                                    {"--locality", "0.03"},
+                                                                                    {"--positive"},
+                                                                                    {"--rest", "mean"},
+                                                                                    {"--stroke", "s.txt"},
+                                                                                    {"--still", "s.txt"},
+                                                                                    {"--near", "0.1"},
+                                                                                    {"--far", "0.5"},
+                                                                                    {"--iterations", "9"},
+                                                                                    {"--field-memory", "9"}}) {
+    std::vector<std::string> arguments{"components", "--fit", "c.npz", "in.obj", "in.pc2", "-o", "d.npz"};
+    arguments.insert(arguments.end(), idle.begin(), idle.end());
+    ExpectFailure(arguments, 2,
+                  idle[0] +
+                      " has no effect with --fit, which takes the components of its file as they are and finds "
+                      "weights alone" +
+                      end);
+  }
+  const auto pose = [](std::vector<std::string> more) {
+    more.insert(more.begin(), {"pose", "c.npz"});
+    return more;
+  };
+  const std::vector<std::string> weights{"--weights", "c.csv", "-o", "x.pc2"}, drag{"--drag", "d.txt", "-o", "x.obj"};
+  const auto with = [&](std::vector<std::string> base, const std::vector<std::string>& more) {
+    base.insert(base.end(), more.begin(), more.end());
+    return pose(base);
+  };
+  ExpectFailure(with(weights, {"--clip", "in.obj", "in.pc2"}), 2,
+                "--clip has no effect without --gain, --offset or --curve, which say what is edited in it" + pose_end);
+  ExpectFailure(with(weights, {"--many"}), 2,
+                "--many has no effect without --drag: it says how weights are found for what is dragged" + pose_end);
+  ExpectFailure(with(drag, {"--many", "--price", "0"}), 2,
+                "--many has no effect at --price 0: no component costs anything" + pose_end);
+  ExpectFailure(with(drag, {"--no-track"}), 2,
+                "--no-track has no effect on --drag: the shape stands where its --frame does" + pose_end);
+  ExpectFailure(pose({"--gain", "1=2", "-o", "x.pc2", "--no-track"}), 2,
+                "--no-track has no effect on edits, which leave the motion of the whole as it is" + pose_end);
+  ExpectFailure(with(weights, {"--quality", "50"}), 2,
+                "--quality has no effect on x.pc2, which is no .sac stream" + pose_end);
+  ExpectFailure(with(drag, {"--force"}), 2,
+                "--force has no effect on x.obj, which has no other file beside it" + pose_end);
+  ExpectFailure(pose({"--gain", "1=2", "--gain", "component 1=3", "-o", "x.pc2"}), 1,
+                "--gain: component 1 is there twice, and the second would replace the first");
+}
+
 TEST_F(ComponentsTest, ADamagedArchiveIsRefused) {
   Good({"components", "in.obj", "in.pc2", "-o", "c.npz", "--count", "3"});
   const std::string whole = Read("c.npz");
