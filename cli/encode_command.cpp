@@ -280,6 +280,9 @@ void AddStructure(CLI::App& app, EncodeOptions& o) {
       "--reference previous [2, with --unchecked 0]");
   app.add_flag("!--no-index", encoder.index,
                "leave out the index of groups, with which a stream of several groups ends; players seek by it");
+  app.add_flag_callback(
+      "--no-join", [&encoder] { encoder.join = false; },
+      "code vertices apart that coincide in all frames: seams between them may open");
   AddNumber(
       app, "--base-levels", encoder.base_levels, 0u, 32u,
       "code groups in layers that sac thin can drop: N levels of the pyramid in the first, then the others one by "

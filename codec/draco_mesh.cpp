@@ -159,26 +159,20 @@ Status Extract(const draco::Mesh& in, bool with_ids, DracoMesh& out) {
     out.normals = Values<Vec3f>(*normal, normal->size());
     if (!corners(*normal, out.normal_triangles)) return Status::Corrupt("I-frame: a corner without a normal");
   }
-  // Attributes of vertices: whichever corner comes last decides; an encoder gives all the same.
-  const auto per_entry = [&]<class Value>(const draco::PointAttribute& attribute, std::vector<Value>& values) {
-    values.resize(out.entries);
-    for (std::uint32_t j = 0; j < in.num_faces(); ++j) {
-      for (std::size_t k = 0; k < 3; ++k) {
-        const draco::AttributeValueIndex index = attribute.mapped_index(in.face(draco::FaceIndex(j))[k]);
-        if (index.value() >= attribute.size()) return false;
-        attribute.GetValue(index, &values[out.triangles[j][k]]);
-      }
-    }
-    return true;
-  };
   if (const auto* color = in.GetNamedAttribute(draco::GeometryAttribute::COLOR)) {
-    if (color->data_type() != draco::DT_UINT8 || color->num_components() != 4 || !per_entry(*color, out.colors)) {
+    if (color->data_type() != draco::DT_UINT8 || color->num_components() != 4 ||
+        !corners(*color, out.color_triangles)) {
       return Status::Corrupt("I-frame: malformed colours");
     }
+    out.colors = Values<std::array<std::uint8_t, 4>>(*color, color->size());
   }
   if (const auto* id = in.GetNamedAttribute(draco::GeometryAttribute::GENERIC)) {
-    if (!with_ids || id->data_type() != draco::DT_UINT32 || id->num_components() != 1 || !per_entry(*id, out.ids)) {
+    if (!with_ids || id->data_type() != draco::DT_UINT32 || id->num_components() != 1 || !corners(*id, out.ids)) {
       return Status::Corrupt("I-frame: an unknown attribute");
+    }
+    const auto values = Values<std::array<std::uint32_t, 1>>(*id, id->size());
+    for (Triangle& t : out.ids) {
+      for (std::uint32_t& i : t) i = values[i][0];
     }
   }
   return Status::Ok();

@@ -20,14 +20,15 @@ struct DracoMesh {
   std::vector<std::array<float, 2>> uvs;
   std::vector<Triangle> uv_triangles;  // of uvs; empty without texture coordinates
   std::vector<Vec3f> normals;
-  std::vector<Triangle> normal_triangles;           // of normals; empty without
-  std::vector<std::array<std::uint8_t, 4>> colors;  // per entry; empty without
-  std::vector<std::uint32_t> ids;                   // per entry, of an encoder's own numbering; empty without
+  std::vector<Triangle> normal_triangles;  // of normals; empty without
+  std::vector<std::array<std::uint8_t, 4>> colors;
+  std::vector<Triangle> color_triangles;  // of colors; empty without
+  std::vector<Triangle> ids;              // per corner, of an encoder's own numbering; empty without
 };
 
 // Decodes a Draco stream; sizes are checked against `header` before Draco allocates. kCorrupt when Draco refuses it or
 // a rule of spec.md 5.1 is broken. Throws std::bad_alloc when there is no memory. `with_ids`: an encoder's own, whose
-// entries have ids.
+// corners have ids.
 Status DecodeDraco(std::span<const std::uint8_t> bytes, const SequenceHeader& header, DracoMesh& mesh,
                    bool with_ids = false);
 

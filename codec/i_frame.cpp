@@ -3,10 +3,12 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <numeric>
 #include <utility>
 
 #include "codec/patches.h"
 #include "codec/position_coder.h"
+#include "codec/vertex_copies.h"
 #include "format/recorded_bins.h"
 #include "geometry/corner_groups.h"
 
@@ -22,13 +24,23 @@ std::vector<Value> Scatter(const std::vector<Value>& values, std::span<const std
 }
 
 // An I-frame that is being put together. `vertex` holds the vertex of each of Draco's entries, then of each loose
-// vertex; `grid` holds the position of each vertex.
+// vertex; `grid` holds the position of each vertex. Attributes are those of copies (spec.md 5.6): vertex v has the
+// copies from first_copy[v] on. Where there is one of each, these are the vertices.
 struct Assembly {
   DracoMesh draco;
   std::uint32_t vertices = 0;
   std::vector<std::uint32_t> vertex;
   std::vector<Triangle> triangles;
   std::vector<GridPosition> grid;
+  std::vector<std::uint32_t> first_copy;  // and one more; empty where there is one of each
+  std::vector<Triangle> corners;          // of copies; empty likewise
+
+  std::size_t copies() const { return first_copy.empty() ? vertices : first_copy.back(); }
+  const std::vector<Triangle>& copy_triangles() const { return first_copy.empty() ? triangles : corners; }
+  // The copies of a vertex: from the first to before the second.
+  std::pair<std::uint32_t, std::uint32_t> CopiesOf(std::uint32_t v) const {
+    return first_copy.empty() ? std::pair(v, v + 1) : std::pair(first_copy[v], first_copy[v + 1]);
+  }
 };
 
 Status CheckAttributes(const IFrameSyntax& syntax, const DracoMesh& draco) {
@@ -36,7 +48,8 @@ Status CheckAttributes(const IFrameSyntax& syntax, const DracoMesh& draco) {
   if (!draco.normal_triangles.empty() && !syntax.has_normals) {
     return Status::Corrupt("I-frame: loose vertices without normals");
   }
-  if (!draco.colors.empty() && !syntax.has_colors) return Status::Corrupt("I-frame: loose vertices without colours");
+  if (!draco.color_triangles.empty() && !syntax.has_colors)
+    return Status::Corrupt("I-frame: loose vertices without colours");
   return Status::Ok();
 }
 
@@ -74,60 +87,94 @@ Status ReadPositions(const IFrameSyntax& syntax, const SequenceHeader& header, R
                                         {syntax.position_step, syntax.position_slope}, header.position_bits, out.grid,
                                         bins));
   }
-  return positions.AtEnd() ? Status::Ok() : Status::Corrupt("I-frame: wrong length");
+  return Status::Ok();
 }
 
-// Adds to `corners` those of the loose triangles: each takes the value of the first corner that its vertex has in
-// Draco's mesh, or its vertex's own of `of_vertex`. `triangles` are Draco's, of vertices.
-void AddLooseCorners(const std::vector<Triangle>& triangles, const std::vector<Triangle>& loose_triangles,
-                     std::vector<std::uint32_t> of_vertex, std::vector<Triangle>& corners) {
-  for (std::size_t j = corners.size(); j-- > 0;) {
-    for (std::size_t k = 3; k-- > 0;) of_vertex[triangles[j][k]] = corners[j][k];
+// Decodes which copy of its vertex each corner has (spec.md 5.6), with which the range code ends. Their bins are
+// recorded in `bins` unless it is null.
+Status ReadCopies(const IFrameSyntax& syntax, const SequenceHeader& header, RangeDecoder& range, Assembly& out,
+                  RecordedBins* bins = nullptr) {
+  if (header.copies > 0) {
+    const DracoMesh& draco = out.draco;
+    const CornerKinds kinds =
+        KindsOfCorners(out.triangles, out.triangles.size() - syntax.loose_triangles.size(),
+                       {&draco.uv_triangles, &draco.normal_triangles, &draco.color_triangles}, out.vertices);
+    CopyCoder<RangeDecoder> coder(out.vertices, out.triangles, kinds);
+    if (!coder.Code(range, header.copies, out.corners)) return Status::Corrupt("I-frame: malformed copies of vertices");
+    if (bins) CopyCoder<RecordedBins>(out.vertices, out.triangles, kinds).Code(*bins, header.copies, out.corners);
+    out.first_copy = {0};
+    std::inclusive_scan(coder.counts().begin(), coder.counts().end(), std::back_inserter(out.first_copy));
+    if (out.copies() != header.given_out()) {
+      return Status::Corrupt("I-frame: the number of copies is not the header's");
+    }
+    for (std::size_t j = 0; j < out.corners.size(); ++j) {
+      for (std::size_t k = 0; k < 3; ++k) out.corners[j][k] += out.first_copy[out.triangles[j][k]];
+    }
   }
-  for (const Triangle& t : loose_triangles) corners.push_back({of_vertex[t[0]], of_vertex[t[1]], of_vertex[t[2]]});
+  return range.AtEnd() ? Status::Ok() : Status::Corrupt("I-frame: wrong length");
 }
 
-// Brings the normals of Draco's corners, of loose triangles and of loose vertices together (spec.md 5.3). The triangles
-// are all there already.
+// Adds loose vertices and triangles after Draco's (spec.md 5.3, step 1).
+Status AddLooseParts(const IFrameSyntax& syntax, const SequenceHeader& header, Assembly& out) {
+  if (out.triangles.size() + syntax.loose_triangles.size() != header.triangles) {
+    return Status::Corrupt("I-frame: the number of triangles is not the header's");
+  }
+  for (std::size_t i = 0; i < syntax.loose_vertices.size(); ++i) {
+    out.vertex[out.draco.entries + i] = out.vertices++;
+    out.grid.push_back(syntax.loose_vertices[i].position);
+  }
+  out.triangles.insert(out.triangles.end(), syntax.loose_triangles.begin(), syntax.loose_triangles.end());
+  return Status::Ok();
+}
+
+// Adds to `corners`, which has those of Draco's triangles, the corners of the loose ones: each takes the value of the
+// first corner that its copy has in Draco's mesh, or its copy's own of `of_copy`. `triangles` are all, of copies.
+void AddLooseCorners(const std::vector<Triangle>& triangles, std::vector<std::uint32_t> of_copy,
+                     std::vector<Triangle>& corners) {
+  for (std::size_t j = corners.size(); j-- > 0;) {
+    for (std::size_t k = 3; k-- > 0;) of_copy[triangles[j][k]] = corners[j][k];
+  }
+  for (std::size_t j = corners.size(); j < triangles.size(); ++j) {
+    const Triangle& t = triangles[j];
+    corners.push_back({of_copy[t[0]], of_copy[t[1]], of_copy[t[2]]});
+  }
+}
+
+// Brings the normals of Draco's corners, of loose triangles and of loose vertices together (spec.md 5.3).
 void JoinNormals(const IFrameSyntax& syntax, Assembly& out) {
   DracoMesh& draco = out.draco;
   const bool has_loose = syntax.has_normals && !syntax.loose_vertices.empty();
   if (draco.normal_triangles.empty() && !has_loose) return;
   const auto none = static_cast<std::uint32_t>(draco.normals.size());
   draco.normals.push_back({});  // where there is no normal
-  std::vector<std::uint32_t> of_vertex(out.vertices, none);
-  std::vector<Vec3f> loose(out.vertices);
+  std::vector<std::uint32_t> of_copy(out.copies(), none);
+  std::vector<Vec3f> loose(out.copies());
   for (std::size_t i = 0; has_loose && i < syntax.loose_vertices.size(); ++i) {
-    const std::uint32_t v = out.vertex[draco.entries + i];
-    of_vertex[v] = static_cast<std::uint32_t>(draco.normals.size());
-    loose[v] = syntax.loose_vertices[i].normal;
-    draco.normals.push_back(loose[v]);
+    const auto [first, end] = out.CopiesOf(out.vertex[draco.entries + i]);
+    std::fill(of_copy.begin() + first, of_copy.begin() + end, static_cast<std::uint32_t>(draco.normals.size()));
+    std::fill(loose.begin() + first, loose.begin() + end, syntax.loose_vertices[i].normal);
+    draco.normals.push_back(syntax.loose_vertices[i].normal);
   }
   draco.normal_triangles.resize(out.triangles.size() - syntax.loose_triangles.size(), {none, none, none});
-  AddLooseCorners(out.triangles, syntax.loose_triangles, std::move(of_vertex), draco.normal_triangles);
-  MergeNormals(out.triangles, out.vertices, ClassesByBits(draco.normals), loose, draco.normals, draco.normal_triangles);
+  AddLooseCorners(out.copy_triangles(), std::move(of_copy), draco.normal_triangles);
+  MergeNormals(out.copy_triangles(), out.copies(), ClassesByBits(draco.normals), loose, draco.normals,
+               draco.normal_triangles);
 }
 
-// Adds loose vertices and triangles after Draco's (spec.md 5.3, step 1).
-Status AddLooseParts(const IFrameSyntax& syntax, const SequenceHeader& header, Assembly& out) {
-  DracoMesh& draco = out.draco;
-  if (out.triangles.size() + syntax.loose_triangles.size() != header.triangles) {
-    return Status::Corrupt("I-frame: the number of triangles is not the header's");
+// The colour of each copy: that of its last corner in Draco's mesh, or of its loose vertex (spec.md 5.3).
+std::vector<std::array<std::uint8_t, 4>> JoinColors(const IFrameSyntax& syntax, const Assembly& parts) {
+  const bool has_loose = syntax.has_colors && !syntax.loose_vertices.empty();
+  const std::vector<Triangle>& corners = parts.draco.color_triangles;
+  if (corners.empty() && !has_loose) return {};
+  std::vector<std::array<std::uint8_t, 4>> colors(parts.copies());
+  for (std::size_t i = 0; has_loose && i < syntax.loose_vertices.size(); ++i) {
+    const auto [first, end] = parts.CopiesOf(parts.vertex[parts.draco.entries + i]);
+    std::fill(colors.begin() + first, colors.begin() + end, syntax.loose_vertices[i].color);
   }
-  if (syntax.has_colors && !syntax.loose_vertices.empty()) draco.colors.resize(draco.entries);
-  for (std::size_t i = 0; i < syntax.loose_vertices.size(); ++i) {
-    const LooseVertex& v = syntax.loose_vertices[i];
-    out.vertex[draco.entries + i] = out.vertices++;
-    out.grid.push_back(v.position);
-    if (syntax.has_colors) draco.colors.push_back(v.color);
+  for (std::size_t j = 0; j < corners.size(); ++j) {
+    for (std::size_t k = 0; k < 3; ++k) colors[parts.copy_triangles()[j][k]] = parts.draco.colors[corners[j][k]];
   }
-  if (!draco.uv_triangles.empty()) {
-    AddLooseCorners(out.triangles, syntax.loose_triangles, std::vector<std::uint32_t>(out.vertices),
-                    draco.uv_triangles);
-  }
-  out.triangles.insert(out.triangles.end(), syntax.loose_triangles.begin(), syntax.loose_triangles.end());
-  JoinNormals(syntax, out);
-  return Status::Ok();
+  return colors;
 }
 
 // Renumbers the vertices by component and, within it, by patch, so that each of these is a run (spec.md 5.3, step 2).
@@ -158,6 +205,28 @@ std::vector<std::uint32_t> Renumber(std::uint32_t patch_size, Assembly& parts, D
   return renumbered;
 }
 
+// Numbers the copies by the new numbers of their vertices, `renumbered`. Returns the new number of each copy.
+std::vector<std::uint32_t> RenumberCopies(const std::vector<std::uint32_t>& renumbered, const Assembly& parts,
+                                          DecodedIFrame& out) {
+  if (parts.first_copy.empty()) return renumbered;
+  std::vector<std::uint32_t> counts(parts.vertices);
+  for (std::uint32_t v = 0; v < parts.vertices; ++v) {
+    counts[renumbered[v]] = parts.first_copy[v + 1] - parts.first_copy[v];
+  }
+  std::vector<std::uint32_t> first(parts.vertices), copies(parts.copies());
+  std::exclusive_scan(counts.begin(), counts.end(), first.begin(), 0u);
+  for (std::uint32_t v = 0; v < parts.vertices; ++v) {
+    out.mesh.vertex_of_copy.insert(out.mesh.vertex_of_copy.end(), counts[v], v);
+    const auto begin = copies.begin() + parts.first_copy[v];
+    std::iota(begin, begin + counts[renumbered[v]], first[renumbered[v]]);
+  }
+  out.copy_triangles = parts.corners;
+  for (Triangle& t : out.copy_triangles) {
+    for (std::uint32_t& c : t) c = copies[c];
+  }
+  return copies;
+}
+
 }  // namespace
 
 Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco,
@@ -168,11 +237,18 @@ Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, 
   SAC_RETURN_IF_ERROR(JoinEntries(syntax, header, parts));
   SAC_RETURN_IF_ERROR(ReadPositions(syntax, header, positions, parts));
   SAC_RETURN_IF_ERROR(AddLooseParts(syntax, header, parts));
-  std::vector<std::uint32_t> renumbered = Renumber(header.patch_size, parts, out.mesh);
+  SAC_RETURN_IF_ERROR(ReadCopies(syntax, header, positions, parts));
+  std::vector<std::array<std::uint8_t, 4>> colors = JoinColors(syntax, parts);
+  if (!parts.draco.uv_triangles.empty()) {
+    AddLooseCorners(parts.copy_triangles(), std::vector<std::uint32_t>(parts.copies()), parts.draco.uv_triangles);
+  }
+  JoinNormals(syntax, parts);
+  const std::vector<std::uint32_t> renumbered = Renumber(header.patch_size, parts, out.mesh);
+  const std::vector<std::uint32_t> copies = RenumberCopies(renumbered, parts, out);
   out.normals = std::move(parts.draco.normals);
   out.normal_triangles = std::move(parts.draco.normal_triangles);
-  if (out.normal_triangles.empty()) out.normals = Scatter(out.normals, renumbered, parts.vertices);
-  out.colors = Scatter(parts.draco.colors, parts.vertex, parts.vertices);
+  if (out.normal_triangles.empty()) out.normals = Scatter(out.normals, copies, copies.size());
+  out.colors = Scatter(colors, copies, copies.size());
   out.uvs = std::move(parts.draco.uvs);
   out.uv_triangles = std::move(parts.draco.uv_triangles);
   out.vertex_of_entry = std::move(parts.vertex);
@@ -193,7 +269,9 @@ Status ReadIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& h
   Assembly parts;
   SAC_RETURN_IF_ERROR(DecodeDraco(syntax.mesh, header, parts.draco));
   SAC_RETURN_IF_ERROR(JoinEntries(syntax, header, parts));
-  return ReadPositions(syntax, header, positions, parts, &syntax.positions);
+  SAC_RETURN_IF_ERROR(ReadPositions(syntax, header, positions, parts, &syntax.positions));
+  SAC_RETURN_IF_ERROR(AddLooseParts(syntax, header, parts));
+  return ReadCopies(syntax, header, positions, parts, &syntax.positions);
 }
 
 }  // namespace sac

@@ -25,16 +25,18 @@ struct DecodedIFrame {
   std::vector<Triangle> normal_triangles;  // empty when the normals are those of vertices
   std::vector<std::array<std::uint8_t, 4>> colors;
   std::vector<std::uint32_t> vertex_of_entry;  // Draco's entries, then the loose vertices
+  std::vector<Triangle> copy_triangles;        // of copies; empty when there is one of each vertex (spec.md 5.6)
 };
 
-// Joins Draco's mesh with what Draco could not code, and decodes the positions, with which the range code ends
-// (ParseIFrame). Returns kCorrupt when it does not, or when the counts do not add up to the header's.
+// Joins Draco's mesh with what Draco could not code, and decodes positions and copies, with which the range code ends
+// (ParseIFrame). Attributes are those of copies. Returns kCorrupt when it does not, or when the counts do not add up to
+// the header's.
 Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco,
                       RangeDecoder& positions, DecodedIFrame& out);
-// The same of an I-frame that is yet to be written: the positions are those of `syntax`.
+// The same of an I-frame that is yet to be written: positions and copies are those of `syntax`.
 Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, DracoMesh draco, DecodedIFrame& out);
 
-// Parses an I-frame with its positions, so that WriteIFrame() can write it again.
+// Parses an I-frame with its positions and copies, so that WriteIFrame() can write it again.
 Status ReadIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& header, IFrameSyntax& syntax);
 
 }  // namespace sac

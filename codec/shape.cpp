@@ -35,7 +35,7 @@ Status CheckHarmonics(const SequenceHeader& header, std::span<const Component> c
                       std::span<const std::uint32_t> counts, std::span<const std::uint32_t> handles,
                       const Limits& limits, Shape& shape) {
   double& work = shape.work;
-  double memory = static_cast<double>(MeshMemory(header.vertices, header.triangles));
+  double memory = static_cast<double>(MeshMemory(header.vertices, header.copies, header.triangles));
   double values = 0;
   for (std::size_t i = 0; i < counts.size(); ++i) {
     if (counts[i] > limits.expert.harmonics) return Status::Limit("more harmonics in a component than the limit");
@@ -72,7 +72,8 @@ Status FactorizeSystem(const SequenceHeader& header, std::span<const std::uint32
   shape.work += 3 * size.work;
   shape.memory += 2 * kFactorMemory * size.values + shape.system->memory();
   shape.reconstructor_memory = kHandleMemory * shape.blend.handles().vertices.size() +
-                               kFunctionMemory * shape.blend.columns() + kFieldMemory * shape.vertices();
+                               kFunctionMemory * shape.blend.columns() +
+                               kFieldMemory * (shape.vertices() + header.copies);
   if (header.references_previous()) {
     shape.reconstructor_memory += kFactorMemory * size.values + shape.system->memory();
     shape.memory += kFactorMemory * size.values + shape.system->memory();
@@ -142,6 +143,7 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
   SAC_RETURN_IF_ERROR(CheckHarmonics(header, mesh.components, counts, handle_counts, limits, shape));
 
   shape.triangles = std::move(mesh.triangles);
+  shape.vertex_of_copy = std::move(mesh.vertex_of_copy);
   shape.components = std::move(mesh.components);
   shape.edges = BuildEdges(shape.triangles);
   shape.graph = BuildEdgeGraph(static_cast<std::uint32_t>(mesh.grid.size()), shape.edges);

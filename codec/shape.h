@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <span>
@@ -27,7 +28,20 @@ struct DecodedMesh {
   std::vector<Triangle> triangles;
   std::vector<Component> components;
   std::vector<Component> patches;  // empty without a detail plane
+  // Of each vertex that decoders give out the one of `grid` that it is a copy of, ascending; empty when there is one of
+  // each (spec.md 5.6).
+  std::vector<std::uint32_t> vertex_of_copy;
 };
+
+// Gives each copy the value of its vertex: `values` has one a vertex before, one a copy afterwards. `vertex_of_copy` is
+// that of a DecodedMesh.
+template <class Value>
+void SpreadToCopies(const std::vector<std::uint32_t>& vertex_of_copy, std::vector<Value>& values) {
+  if (vertex_of_copy.empty()) return;
+  values.resize(vertex_of_copy.size());
+  // From the back: no copy stands before its vertex.
+  for (std::size_t i = vertex_of_copy.size(); i-- > 0;) values[i] = values[vertex_of_copy[i]];
+}
 
 // The positions of M'0 whose places on the grid are `grid`, model units.
 PositionMatrix ShapePositions(const SequenceHeader& header, std::span<const GridPosition> grid);
@@ -35,6 +49,7 @@ PositionMatrix ShapePositions(const SequenceHeader& header, std::span<const Grid
 // Everything that both directions derive from the I-frame (spec.md 6).
 struct Shape {
   std::vector<Triangle> triangles;
+  std::vector<std::uint32_t> vertex_of_copy;  // as in DecodedMesh
   std::vector<Component> components;
   EdgeList edges;
   EdgeGraph graph;            // of `edges`

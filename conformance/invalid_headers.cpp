@@ -3,6 +3,7 @@
 #include <limits>
 #include <utility>
 
+#include "codec/vertex_copies.h"
 #include "conformance/invalid_collection.h"
 
 namespace sac {
@@ -34,6 +35,27 @@ void AddIFrameLists(Collection& c) {
   ChangeIFrame(c, "R28", "no_component", [](IFrameSyntax& s) { s.harmonics.clear(); });
   ChangeIFrame(c, "R29", "twice", [](IFrameSyntax& s) { s.order = {3, 2, 1, 1}; });
   ChangeIFrame(c, "R29", "missing", [](IFrameSyntax& s) { s.order = {0, 1, 2, 4}; });
+}
+
+// Adds streams that break the rules of the copies of vertices.
+void AddCopies(Collection& c) {
+  const auto with_copies = [](StreamParts& p, std::uint32_t said, std::vector<Triangle> copies) {
+    p.header.copies = said;
+    IFrameSyntax& s = p.i_frame;
+    const CornerKinds kinds = KindsOfCorners(s.loose_triangles, 0, {}, p.header.vertices);
+    CopyCoder<RecordedBins>(p.header.vertices, s.loose_triangles, kinds).Code(s.positions, 6, copies);
+  };
+  c.Change("R75", "few", [&](StreamParts& p) { with_copies(p, 2, {{0, 0, 0}, {1, 0, 0}}); });
+  c.Change("R75", "many", [&](StreamParts& p) { with_copies(p, 1, {{0, 0, 0}, {1, 1, 0}}); });
+  c.Change("R75", "which", [&](StreamParts& p) {  // the copy before the first of three
+    p.i_frame.loose_triangles = {{0, 2, 1}, {0, 0, 0}, {3, 3, 0}};
+    p.header.triangles = 3;
+    with_copies(p, 2, {{0, 0, 0}, {1, 2, 2}, {0, 0, 0xffffffffu}});
+  });
+  c.Change("R29", "copies", [&](StreamParts& p) {  // an order of the vertices, not of their copies
+    with_copies(p, 1, {{0, 0, 0}, {1, 0, 0}});
+    p.i_frame.order = {0, 1, 2, 3, 5};
+  });
 }
 
 // Adds streams that break the rules of the shape that decoders derive from an I-frame.
@@ -140,6 +162,14 @@ void AddHeader(Collection& c) {
   header("R68", "infinity", [](SequenceHeader& h) { h.offset_x = -std::numeric_limits<double>::infinity(); });
   c.ChangePackets("R68", "zero", [](auto& packets) { packets[0].second.insert(packets[0].second.end(), 24, 0); });
   c.ChangePackets("R12", "offset", [](auto& packets) { packets[0].second.insert(packets[0].second.end(), 16, 1); });
+  header("R74", "copies", [](SequenceHeader& h) { h.copies = 7; });
+  header(
+      "R22", "copies",
+      [](SequenceHeader& h) {
+        h.triangles = 2'000'000;
+        h.copies = 3'999'997;
+      },
+      "limit");
   header(
       "R22", "vertices", [](SequenceHeader& h) { h.vertices = 4'000'001; }, "limit");
   header(
@@ -148,6 +178,7 @@ void AddHeader(Collection& c) {
 
 void AddIFrame(Collection& c) {
   AddIFrameLists(c);
+  AddCopies(c);
   AddShape(c);
   AddFingerprint(c);
 }

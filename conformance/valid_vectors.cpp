@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/valid_vectors.h"
 
+#include <algorithm>
 #include <array>
 #include <random>
 
+#include "codec/vertex_copies.h"
 #include "conformance/valid_packets.h"
 #include "conformance/vector_clips.h"
+#include "geometry/components.h"
 #include "tests/hard_cube.h"
 
 namespace sac {
@@ -151,6 +154,63 @@ EncoderSettings Previous() {
   return settings;
 }
 
+// Triangles of few vertices, some degenerate, whose corners have copies at random. The mesh is coded without Draco.
+Bytes RandomCopies() {
+  constexpr std::uint32_t kVertices = 9, kTriangles = 60;
+  StreamParts parts = SmallStream();
+  std::mt19937 random(11);
+  IFrameSyntax& frame = parts.i_frame;
+  parts.header.vertices = kVertices;
+  parts.header.triangles = kTriangles;
+  frame.loose_vertices.clear();
+  frame.loose_triangles.clear();
+  for (std::uint32_t v = 0; v < kVertices; ++v) {
+    frame.loose_vertices.push_back({{v, v * v % 16, 7 * v % 11}, {}, {}});
+  }
+  std::vector<std::uint32_t> count(kVertices);
+  std::vector<Triangle> copies;
+  for (std::uint32_t j = 0; j < kTriangles; ++j) {
+    Triangle& t = frame.loose_triangles.emplace_back();
+    Triangle& of_corners = copies.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      t[k] = random() % (kVertices - 1);  // the last has no corner
+      of_corners[k] = std::min(count[t[k]], static_cast<std::uint32_t>(random() % 7));
+      if (of_corners[k] == count[t[k]]) ++count[t[k]];
+    }
+  }
+  parts.header.copies = 1 - kVertices;
+  for (const std::uint32_t n : count) parts.header.copies += n;
+  const CornerKinds kinds = KindsOfCorners(frame.loose_triangles, 0, {}, kVertices);
+  CopyCoder<RecordedBins>(kVertices, frame.loose_triangles, kinds).Code(frame.positions, parts.header.copies, copies);
+  std::uint32_t components = 0;
+  const auto labels = LabelComponents(kVertices, frame.loose_triangles, components);
+  frame.harmonics.assign(components, 1);
+  frame.harmonics[labels[0]] = 3;
+  parts.header.harmonics = components + 2;
+  Derive(parts);
+  parts.groups = {CodeGroup(parts, 3, 2, [&](std::uint32_t i, FrameSyntax& f) {
+    if (i == 1) f.planes[kMotion][3] = 2;
+  })};
+  return parts.Join();
+}
+
+// Adds streams of vertices that have copies.
+void AddCopies(std::vector<ValidVector>& vectors) {
+  EncoderSettings joined = Harmonics(24);
+  joined.join = joined.keep_order = true;
+  Add(vectors, "copies", "copies of vertices by normals and texture coordinates, an order of copies",
+      Wave(SplitMesh(Synth(SynthKind::kVase, 150, 1).mesh, 1), 5), joined, 60);
+  Add(vectors, "copies_hard", "copies by normals alone", Wave(SplitMesh(HardCubeMesh(), 1), 4), joined, 60);
+  Add(vectors, "copies_odd", "copies by colours, loose triangles of copies, a loose vertex",
+      Wave(SplitMesh(OddHardMesh(), 2), 4), joined, 60);
+  joined.detail_step = 0.003;
+  joined.keep_order = false;
+  Mesh plain = SplitMesh(Synth(SynthKind::kSphere, 150, 1).mesh, 3);
+  plain.normals.clear();
+  Add(vectors, "copies_plain", "copies without attributes, a detail plane", Wave(plain, 4), joined, 60);
+  vectors.push_back({"copies_random", "many copies of few vertices, degenerate triangles of copies", RandomCopies()});
+}
+
 // Adds streams with groups, references and meshes of all kinds.
 void AddStructures(std::vector<ValidVector>& vectors) {
   vectors.push_back({"small", "spec.md appendix A: no Draco mesh, 3 frames in a pyramid", SmallStream().Join()});
@@ -184,6 +244,7 @@ void AddStructures(std::vector<ValidVector>& vectors) {
       Wave(OddHardMesh(), 4), kept, 60);
   Add(vectors, "crowded", "vertices of more than 32 edges, edges of many triangles", Wave(CrowdedMesh(), 3),
       Harmonics(24), 60);
+  AddCopies(vectors);
   Add(vectors, "stand_still", "frames that repeat, within a group and across groups", StandStill(), pyramids);
   Add(vectors, "cuts", "intra frames within a group", Cuts(), pyramids);
 }

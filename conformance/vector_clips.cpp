@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "conformance/vector_clips.h"
 
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <map>
 #include <random>
 
 namespace sac {
@@ -96,6 +98,39 @@ Mesh CrowdedMesh() {
     for (std::uint32_t& corner : t) corner = tangle + random() % 30;
   }
   return mesh;
+}
+
+Mesh SplitMesh(const Mesh& mesh, std::uint32_t parts) {
+  Mesh out;
+  std::map<std::array<std::uint32_t, 4>, std::uint32_t> number;
+  const auto add = [&](std::uint32_t v, std::uint32_t uv, std::uint32_t normal, std::uint32_t part) {
+    const auto [at, is_new] = number.try_emplace({v, uv, normal, part}, static_cast<std::uint32_t>(number.size()));
+    if (is_new) {
+      out.positions.push_back(mesh.positions[v]);
+      if (!mesh.uvs.empty()) out.uvs.push_back(mesh.uvs[uv]);
+      if (!mesh.normals.empty()) out.normals.push_back(mesh.normals[normal]);
+      if (!mesh.colors.empty()) {
+        out.colors.push_back(mesh.colors[v]);
+        out.colors.back()[0] = static_cast<std::uint8_t>(out.colors.back()[0] + 50 * part);
+      }
+    }
+    return at->second;
+  };
+  std::vector<bool> is_corner(mesh.positions.size());
+  for (std::uint32_t j = 0; j < mesh.triangles.size(); ++j) {
+    Triangle& t = out.triangles.emplace_back();
+    for (std::size_t k = 0; k < 3; ++k) {
+      const std::uint32_t v = mesh.triangles[j][k];
+      is_corner[v] = true;
+      t[k] = add(v, mesh.uv_triangles.empty() ? 0 : mesh.uv_triangles[j][k],
+                 mesh.normal_triangles.empty() ? v : mesh.normal_triangles[j][k], j % parts);
+    }
+  }
+  for (std::uint32_t v = 0; v < mesh.positions.size(); ++v) {
+    if (!is_corner[v]) add(v, 0, mesh.normal_triangles.empty() ? v : 0, 0);
+  }
+  if (!out.uvs.empty()) out.uv_triangles = out.triangles;
+  return out;
 }
 
 Clip StandStill() {

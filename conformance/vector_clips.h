@@ -29,6 +29,11 @@ Mesh OddHardMesh();
 // triangles.
 Mesh CrowdedMesh();
 
+// `mesh` as programs of games have it: no two corners of a vertex that differ in texture coordinate, normal or colour
+// share one, so that each vertex becomes several at one place. Corners of triangles by `parts` in turn have colours of
+// their own, where the mesh has colours. All attributes are those of vertices; vertices without triangles stay.
+Mesh SplitMesh(const Mesh& mesh, std::uint32_t parts);
+
 // A clip that repeats its first frame, then moves, then repeats the last frame of the motion.
 Clip StandStill();
 

@@ -66,7 +66,7 @@ void TellLooseParts(const std::vector<Vec3d>& positions, const std::vector<Trian
   if (4 * count > 3 * positions.size()) return;
   warnings.push_back("no triangle shares a vertex with another: " + std::to_string(positions.size()) + " vertices at " +
                      std::to_string(count) +
-                     " places; merge them (weld, merge by distance) before the export, for far fewer bytes");
+                     " places; merge them (weld, merge by distance) before the export, for fewer bytes");
 }
 
 }  // namespace

@@ -127,10 +127,11 @@ template <class Coder>
 bool CodeOrder(Coder& coder, const SequenceHeader& header, std::vector<std::uint32_t>& order) {
   SignedModels step;
   std::uint32_t expected = 0;
-  for (std::uint32_t i = 0; i < header.vertices; ++i) {
+  const auto count = static_cast<std::uint32_t>(header.given_out());
+  for (std::uint32_t i = 0; i < count; ++i) {
     if constexpr (Coder::kDecodes) order.emplace_back();
-    if (!CodeNear(coder, step, expected, header.vertices, order[i]) || !coder.ok()) return false;
-    expected = order[i] + 1 < header.vertices ? order[i] + 1 : 0;
+    if (!CodeNear(coder, step, expected, count, order[i]) || !coder.ok()) return false;
+    expected = order[i] + 1 < count ? order[i] + 1 : 0;
   }
   return true;
 }

@@ -36,7 +36,7 @@ struct IFrameSyntax {
   // The step of the positions of Draco's mesh, and what they are coded by (spec.md 5.5).
   std::uint32_t position_step = 16;  // 1/16 of a grid cell
   std::uint32_t position_slope = 0;  // 1/4096 of the length of edges
-  RecordedBins positions;            // to be written; ParseIFrame() leaves it empty
+  RecordedBins positions;            // and copies, to be written; ParseIFrame() leaves it empty
   std::vector<Weld> welds;
   bool has_normals = false;
   bool has_colors = false;
@@ -45,7 +45,8 @@ struct IFrameSyntax {
   std::vector<std::uint32_t> harmonics;    // per component, each at least 1
   std::uint32_t handles_per_harmonic = 0;  // 0: every vertex is a handle (spec.md 6.4.4)
   std::array<float, 2> fingerprint = {};   // of the harmonics (spec.md 6.6)
-  std::vector<std::uint32_t> order;  // per vertex its index in the input; empty when the input's order is not kept
+  // Per copy of a vertex its index in the input; empty when the input's order is not kept.
+  std::vector<std::uint32_t> order;
 };
 
 // Whether `order` holds each number below its size once.
@@ -53,8 +54,8 @@ bool IsPermutation(const std::vector<std::uint32_t>& order);
 
 std::vector<std::uint8_t> WriteIFrame(const IFrameSyntax& syntax, const SequenceHeader& header);
 
-// Parses what WriteIFrame() writes up to the positions, whose models depend on the mesh: `positions` reads on there,
-// and refers to `payload`. Returns kCorrupt when `payload` breaks a rule of spec.md 5.
+// Parses what WriteIFrame() writes up to the positions, whose models depend on the mesh, as those of copies do:
+// `positions` reads on there, and refers to `payload`. Returns kCorrupt when `payload` breaks a rule of spec.md 5.
 Status ParseIFrame(std::span<const std::uint8_t> payload, const SequenceHeader& header, IFrameSyntax& syntax,
                    RangeDecoder& positions);
 

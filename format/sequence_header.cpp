@@ -54,6 +54,9 @@ Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& 
   if (header.position_bits < 1 || header.position_bits > 24) return Status::Corrupt("sequence header: position bits");
   if (header.level_growth < 64 || header.level_growth > 128) return Status::Corrupt("sequence header: level growth");
   if (header.vertices == 0) return Status::Corrupt("sequence header: no vertices");
+  if (header.copies > 3 * std::uint64_t{header.triangles}) {
+    return Status::Corrupt("sequence header: more copies of vertices than corners");
+  }
   if (header.harmonics == 0) return Status::Corrupt("sequence header: no harmonics");
   if (header.harmonics > header.vertices) return Status::Corrupt("sequence header: more harmonics than vertices");
   if (header.patch_size < 1 || header.patch_size > 1024) return Status::Corrupt("sequence header: patch size");
@@ -72,17 +75,17 @@ Status ParseSequenceHeader(std::span<const std::uint8_t> payload, const Limits& 
     if (!std::isfinite(v)) return Status::Corrupt("sequence header: the offset is not finite");
   }
   if (has_offset && !header.has_offset()) return Status::Corrupt("sequence header: an offset of zero");
-  if (header.vertices > limits.vertices) return Exceeds("vertices", header.vertices, limits.vertices);
+  if (header.given_out() > limits.vertices) return Exceeds("vertices", header.given_out(), limits.vertices);
   if (header.triangles > limits.expert.triangles)
     return Exceeds("triangles", header.triangles, limits.expert.triangles);
-  if (MeshMemory(header.vertices, header.triangles) > limits.memory)
+  if (MeshMemory(header.vertices, header.copies, header.triangles) > limits.memory)
     return Status::Limit("the mesh takes more memory than the limit");
   return Status::Ok();
 }
 
 StreamInfo InfoOf(const SequenceHeader& header) {
   StreamInfo info;
-  info.vertices = header.vertices;
+  info.vertices = static_cast<std::uint32_t>(header.given_out());
   info.triangles = header.triangles;
   info.harmonics = header.harmonics;
   info.frame_rate_numerator = header.frame_rate_numerator;

@@ -24,6 +24,7 @@ struct SequenceHeader {
   std::uint8_t position_bits = 10;   // of the position grid, 1..24
   std::uint8_t level_growth = 64;    // of the planes' steps from level to level of a pyramid, in 1/64: 64..128
   std::uint32_t vertices = 0;
+  std::uint32_t copies = 0;  // what decoders give out beside one of each vertex (spec.md 5.6)
   std::uint32_t triangles = 0;
   std::uint32_t harmonics = 0;             // over all components
   std::uint32_t patch_size = 200;          // vertices of a patch at most, 1..1024
@@ -44,6 +45,8 @@ struct SequenceHeader {
   double offset_y = 0;
   double offset_z = 0;
 
+  // The vertices that decoders give out.
+  std::uint64_t given_out() const { return std::uint64_t{vertices} + copies; }
   bool has_offset() const { return offset_x != 0 || offset_y != 0 || offset_z != 0; }
   bool references_previous() const { return reference_shape == static_cast<std::uint8_t>(ReferenceShape::kPrevious); }
   double frames_per_second() const {
@@ -61,6 +64,7 @@ void VisitFields(Header& h, Visitor&& visit) {
   visit("position_bits", h.position_bits);
   visit("level_growth", h.level_growth);
   visit("vertices", h.vertices);
+  visit("copies", h.copies);
   visit("triangles", h.triangles);
   visit("harmonics", h.harmonics);
   visit("patch_size", h.patch_size);

@@ -125,6 +125,10 @@ class Encoding {
     const bool given = result_.segments < task_.shapes.size() && task_.shapes[result_.segments];
     return given ? *task_.shapes[result_.segments] : clip_.mesh();
   }
+  // Which vertices of that segment are joined.
+  std::span<const std::uint32_t> Joined() const {
+    return result_.segments < task_.joined.size() ? task_.joined[result_.segments] : std::span<const std::uint32_t>();
+  }
   // Gives out and measures what has been coded.
   Status Take();
   // Ends the stream after the last frame that could be coded.
@@ -176,7 +180,7 @@ Status Encoding::EncodeSegment() {
 Status Encoding::BeginNextSegment(bool& end) {
   SAC_RETURN_IF_ERROR(clip_.NextSegment(end));
   if (end) return Status::Ok();
-  const Status begun = encoder_->BeginSegment(Shape());
+  const Status begun = encoder_->BeginSegment(Shape(), Joined());
   if (begun.ok()) return Take();
   return encoder_->fault() ? Fail(begun) : Named(clip_.name_of(clip_.first_frame()), begun);
 }
@@ -185,7 +189,9 @@ Status Encoding::Run(const EncoderSettings& settings) {
   const std::string name = clip_.name();
   result_ = {};
   SAC_RETURN_IF_ERROR(clip_.Rewind());
-  SAC_RETURN_IF_ERROR(Named(name, Encoder::Create(Shape(), settings, encoder_)));
+  EncoderSettings own = settings;
+  own.join = false;  // but for those of the task
+  SAC_RETURN_IF_ERROR(Named(name, Encoder::Create(Shape(), own, encoder_, Joined())));
   for (bool end = false; !end;) {
     SAC_RETURN_IF_ERROR(EncodeSegment());
     SAC_RETURN_IF_ERROR(BeginNextSegment(end));

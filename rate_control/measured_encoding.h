@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "rate_control/shape_residual.h"
 #include "sac/clip.h"
@@ -27,6 +28,8 @@ Status Named(const std::string& name, const Status& status);
 struct EncodingTask {
   // The mesh of each segment's I-frame; the clip's own where there is none.
   std::span<const std::optional<Mesh>> shapes = {};
+  // For each segment the lowest vertex that each of its vertices is joined with; empty where none is.
+  std::span<const std::vector<std::uint32_t>> joined = {};
   bool measure = true;  // decodes the stream while it is encoded and measures it against the clip
   ByteSink sink;        // gets the bytes; it may be empty
   // With `measure`: gets the decoded shape and all frames of a clip that has one segment; null: nobody does.

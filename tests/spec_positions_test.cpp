@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Runs the worked example of spec.md 5.5.
+// Runs the worked examples of spec.md 5.5 and 5.6.
 #include <gtest/gtest.h>
 
 #include <cstddef>
@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codec/position_coder.h"
+#include "codec/vertex_copies.h"
 #include "format/range_coder.h"
 #include "format/recorded_bins.h"
 #include "tests/spec_examples.h"
@@ -56,6 +57,23 @@ TEST(Spec, Positions) {
   std::string wanted;
   for (const std::string& line : lines) wanted += line + '\n';
   EXPECT_EQ(told.str(), wanted);
+}
+
+TEST(Spec, Copies) {
+  std::vector<Triangle> triangles, copies;
+  for (const std::string& line : Example("copies")) {
+    const auto words = Words(line);
+    if (words.at(0) != "triangle") continue;
+    const auto number = [&](std::size_t i) { return static_cast<std::uint32_t>(std::stoul(words.at(i))); };
+    triangles.push_back({number(1), number(2), number(3)});
+    copies.push_back({number(5), number(6), number(7)});
+  }
+  const CornerKinds kinds = KindsOfCorners(triangles, 0, {}, 6);
+  RecordedBins bins;
+  ASSERT_TRUE(CopyCoder<RecordedBins>(6, triangles, kinds).Code(bins, 18, copies));
+  RangeEncoder range;
+  bins.WriteTo(range);
+  EXPECT_EQ("bytes " + Hex(range.Finish()), Example("copies").back());
 }
 
 }  // namespace

@@ -31,12 +31,14 @@ Status CorruptFrame(std::uint32_t frame, const char* why) {
   return Status::Corrupt("frame " + std::to_string(frame) + ": " + why);
 }
 
-// Rounds the reconstructed positions `matrix` of `frame` to floats. Returns kCorrupt when a float cannot hold them.
-Status Round(const PositionMatrix& matrix, std::uint32_t frame, Positions& positions) {
+// Rounds the reconstructed positions `matrix` of `frame` to floats, and gives them to the copies of each vertex.
+// Returns kCorrupt when a float cannot hold them.
+Status Round(const Shape& shape, const PositionMatrix& matrix, std::uint32_t frame, Positions& positions) {
   if (!(matrix.array().abs() <= std::numeric_limits<float>::max()).all()) {
     return CorruptFrame(frame, "positions that are not finite");
   }
   ToPositions(matrix, positions);
+  SpreadToCopies(shape.vertex_of_copy, positions);
   return Status::Ok();
 }
 
@@ -80,7 +82,7 @@ Status FrameSource::ReconstructWith(Reconstructor& with, std::uint32_t frame, Po
   const CodedFrames::Frame& coded = now_.frames[frame - now_.first];
   if (!coded.whole) return CorruptFrame(frame, "its bytes are missing");
   if (!with.StartFrame(coded.intra)) return CorruptFrame(frame, "the reference shape is singular");
-  return Round(with.Reconstruct(coded.coefficients), frame, positions);
+  return Round(shape_, with.Reconstruct(coded.coefficients), frame, positions);
 }
 
 void FrameSource::ReconstructRun(std::size_t job) {
@@ -159,7 +161,8 @@ Status FrameSource::Interpolate(double time, FrameOutput& output) {
   Between(from.planes, to.planes, t, between_);
   Reconstructor& with = *reconstructors_[0];
   const RigidTransform transform = with.TransformBetween(from.rigid, to.rigid, t);
-  if (output.positions != nullptr) return Round(with.Reconstruct(between_, transform), frame, *output.positions);
+  if (output.positions != nullptr)
+    return Round(shape_, with.Reconstruct(between_, transform), frame, *output.positions);
   Blend(between_, transform, output);
   return Status::Ok();
 }

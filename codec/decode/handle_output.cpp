@@ -29,8 +29,9 @@ Box Transformed(const Box& box, const float* matrix) {
 
 }  // namespace
 
-HandleOutput::HandleOutput(const Blend& blend, const PositionMatrix& positions, const Eigen::RowVector3d& centre)
-    : blend_(blend), centre_(centre), boxes_(blend.handles().vertices.size()) {
+HandleOutput::HandleOutput(const Shape& shape) : shape_(shape), boxes_(shape.blend.handles().vertices.size()) {
+  const Blend& blend = shape.blend;
+  const PositionMatrix& positions = shape.positions;
   const Handles& handles = blend.handles();
   for (std::size_t c = 0; c < handles.components.size(); ++c) {
     const Component& run = handles.components[c];
@@ -51,13 +52,24 @@ HandleOutput::HandleOutput(const Blend& blend, const PositionMatrix& positions, 
 }
 
 BlendWeights HandleOutput::Weights() const {
-  const Handles& handles = blend_.handles();
+  const Handles& handles = shape_.blend.handles();
   BlendWeights out;
   out.handle_count = static_cast<std::uint32_t>(boxes_.size());
   out.first = handles.offsets;
   out.handles = handles.followed;
   out.weights.assign(handles.weights.begin(), handles.weights.end());
-  return out;
+  if (shape_.vertex_of_copy.empty()) return out;
+  BlendWeights of_copies;
+  of_copies.handle_count = out.handle_count;
+  of_copies.first.push_back(0);
+  for (const std::uint32_t v : shape_.vertex_of_copy) {
+    for (std::uint32_t i = out.first[v]; i < out.first[v + 1]; ++i) {
+      of_copies.handles.push_back(out.handles[i]);
+      of_copies.weights.push_back(out.weights[i]);
+    }
+    of_copies.first.push_back(static_cast<std::uint32_t>(of_copies.handles.size()));
+  }
+  return of_copies;
 }
 
 Box HandleOutput::Fill(const RowMatrix& about_origin, std::span<float> matrices) const {
@@ -70,7 +82,7 @@ Box HandleOutput::Fill(const RowMatrix& about_origin, std::span<float> matrices)
       for (Eigen::Index k = 0; k < 3; ++k) {
         const double factor = affine_[h] ? about_origin(last - 3 + k, r) : 0;
         matrix[4 * r + k] = static_cast<float>(factor);
-        shift -= factor * centre_[k];
+        shift -= factor * shape_.centre[k];
       }
       matrix[4 * r + 3] = static_cast<float>(shift);
     }

@@ -224,7 +224,7 @@ Status StreamDecoder::CheckHandles(std::span<float> matrices) {
     return Status::Unsupported("frames measured against the frame before are no blend of handles");
   }
   const Shape& shape = start_.shape();
-  if (!handles_) handles_.emplace(shape.blend, shape.positions, shape.centre);
+  if (!handles_) handles_.emplace(shape);
   if (matrices.size() == 12 * handles_->handles()) return Status::Ok();
   return Status::InvalidArgument("matrices of " + std::to_string(matrices.size()) + " floats, " +
                                  std::to_string(handles_->handles()) + " handles have 12 each");
@@ -252,7 +252,7 @@ void StreamDecoder::GiveOut(std::uint32_t frame, double time, const Positions& p
                             const FrameBuffers* buffers) {
   Describe(frame, time, info);
   info.box = BoundingBox(positions);
-  if (buffers) FillBuffers(positions, start_.shape().triangles, info.box, *buffers, normals_);
+  if (buffers) FillBuffers(positions, start_.mesh()->triangles, info.box, *buffers, normals_);
 }
 
 Status StreamDecoder::Finish() {

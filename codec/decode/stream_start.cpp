@@ -130,13 +130,14 @@ Status StreamStart::DecodeMesh(const SequenceHeader& header, std::span<const std
   DecodedIFrame decoded;
   SAC_RETURN_IF_ERROR(AssembleIFrame(syntax, header, std::move(draco), positions, decoded));
   Mesh out;
-  out.triangles = decoded.mesh.triangles;
+  out.triangles = decoded.copy_triangles.empty() ? decoded.mesh.triangles : std::move(decoded.copy_triangles);
   out.uvs = std::move(decoded.uvs);
   out.uv_triangles = std::move(decoded.uv_triangles);
   out.normals = std::move(decoded.normals);
   out.normal_triangles = std::move(decoded.normal_triangles);
   out.colors = std::move(decoded.colors);
   ToPositions(ShapePositions(header, decoded.mesh.grid), out.positions);
+  SpreadToCopies(decoded.mesh.vertex_of_copy, out.positions);
   mesh_ = std::move(out);
   order_ = std::exchange(syntax.order, {});
   syntax_ = std::move(syntax);

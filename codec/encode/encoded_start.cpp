@@ -15,11 +15,13 @@
 #include "codec/encode/error_bound.h"
 #include "codec/encode/i_frame_encoder.h"
 #include "codec/encode/input_check.h"
+#include "codec/encode/joined_mesh.h"
 #include "codec/encode/position_grid.h"
 #include "codec/encode/quality.h"
 #include "format/bytes.h"
 #include "format/crc32.h"
 #include "format/packet.h"
+#include "geometry/coincident_vertices.h"
 
 namespace sac {
 namespace {
@@ -136,14 +138,21 @@ Status FinishIFrame(DecodedMesh mesh, const Limits& limits, IFrameSyntax& syntax
   return Status::Ok();
 }
 
-// EncodeStart() with the fraction `share` of the harmonics that the quality stands for.
-Status EncodeStart(const Mesh& first, const EncoderSettings& settings, double share, EncodedStart& start) {
+bool HasAttributes(const JoinedMesh& input) {
+  return !input.mesh.uvs.empty() || !input.mesh.normals.empty() || !input.colors.empty();
+}
+
+// EncodeStart() with the fraction `share` of the harmonics that the quality stands for. Becomes kUnsupported, and
+// nothing is coded, when attributes would be lost because vertices are joined.
+Status EncodeStart(const JoinedMesh& input, const EncoderSettings& settings, double share, EncodedStart& start) {
+  const Mesh& first = input.mesh;
   start = {};
   SAC_RETURN_IF_ERROR(Progress(settings));
   OperatingPoint defaults{};
   const double rms = RmsRadius(first.positions);
   SAC_RETURN_IF_ERROR(ChooseDefaults(first, settings, rms, defaults));
   start.header = HeaderOf(first, settings, rms, defaults);
+  start.header.copies = static_cast<std::uint32_t>(input.authors() - first.positions.size());
   start.max_error = settings.max_error.value_or(0);
 
   PositionTargets targets;
@@ -151,7 +160,10 @@ Status EncodeStart(const Mesh& first, const EncoderSettings& settings, double sh
                                  start.header, targets));
   IFrameSyntax syntax;
   DecodedIFrame decoded;
-  SAC_RETURN_IF_ERROR(EncodeIFrameMesh(first, targets, start.header, syntax, decoded, start.order));
+  SAC_RETURN_IF_ERROR(EncodeIFrameMesh(input, targets, start.header, syntax, decoded, start.order));
+  if (input.is_joined() && syntax.mesh.empty() && HasAttributes(input)) {
+    return Status::Unsupported("attributes of joined vertices");
+  }
 
   syntax.harmonics = ShareHarmonics(
       decoded.mesh, settings.harmonics.value_or(static_cast<std::uint32_t>(std::lround(share * defaults.harmonics))));
@@ -180,7 +192,7 @@ Status NextPacket(PacketReader& reader, PacketType type, std::span<const std::ui
 // Reads the part of a start that follows the I-frame: bound, order and CRC-32.
 Status ReadEncoderPart(std::span<const std::uint8_t> bytes, EncodedStart& start) {
   constexpr std::size_t kBound = 8, kIndex = 4, kCrc = 4;
-  const std::size_t vertices = start.header.vertices;
+  const auto vertices = static_cast<std::size_t>(start.header.given_out());
   if (bytes.size() != kBound + kIndex * vertices + kCrc) return Status::Corrupt("stream start: length");
   ByteReader reader(bytes);
   start.max_error = reader.F64();
@@ -197,14 +209,24 @@ Status ReadEncoderPart(std::span<const std::uint8_t> bytes, EncodedStart& start)
 
 }  // namespace
 
-Status EncodeStart(const Mesh& first, const EncoderSettings& settings, EncodedStart& start) {
+Status EncodeStart(const Mesh& first, const EncoderSettings& settings, EncodedStart& start,
+                   std::span<const std::uint32_t> lowest) {
   SAC_RETURN_IF_ERROR(CheckSettings(settings));
   SAC_RETURN_IF_ERROR(CheckMesh(first, settings.limits));
   SAC_RETURN_IF_ERROR(CheckFinite(first.positions));
+  SAC_RETURN_IF_ERROR(CheckJoining(lowest, first.positions.size()));
+  CoincidentVertices coincident;
+  if (lowest.empty() && settings.join.value_or(false)) coincident.Add(first.positions);
+  const std::vector<std::uint32_t> found = coincident.Lowest();
+  JoinedMesh input = JoinVertices(first, lowest.empty() ? std::span(found) : lowest);
   // Decoders allow less work for a small I-frame, so a large mesh with a small I-frame may get fewer harmonics.
   constexpr double kFewer = 0.9, kFewest = 0.1;
   for (double share = 1;; share *= kFewer) {
-    Status status = Contain([&] { return EncodeStart(first, settings, share, start); });
+    Status status = Contain([&] { return EncodeStart(input, settings, share, start); });
+    if (status.code() == StatusCode::kUnsupported && input.is_joined()) {
+      input = JoinVertices(first, {});
+      status = Contain([&] { return EncodeStart(input, settings, share, start); });
+    }
     if (status.code() != StatusCode::kLimit || settings.harmonics || share < kFewest) return status;
   }
 }

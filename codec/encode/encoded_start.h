@@ -19,21 +19,23 @@ namespace sac {
 struct EncodedStart {
   SequenceHeader header;
   std::vector<std::uint8_t> i_frame;  // payload of the I-frame packet
-  std::vector<std::uint32_t> order;   // for each decoded vertex its index in the input
+  std::vector<std::uint32_t> order;   // for each vertex that decoders give out its index in the input
   double max_error = 0;               // bound on the error of any vertex, model units; 0: no bound
   Shape shape;
 };
 
 // Codes the I-frame and computes its harmonics. The positions of `mesh` are the shape that all frames are measured
 // from, which the first frame is or is near to. When decoders would refuse the number of harmonics that a quality
-// stands for, fewer are tried. settings.progress is called with 0 between the steps.
+// stands for, fewer are tried. settings.progress is called with 0 between the steps. `lowest` has for each vertex the
+// lowest that it is joined with; where it is empty, settings.join says whether those that coincide in `mesh` are.
 //
 // Returns kInvalidArgument for settings out of range and for a mesh that cannot be coded, kLimit when decoders with
 // settings.limits would refuse the stream or when memory is short, and kCancelled.
-Status EncodeStart(const Mesh& mesh, const EncoderSettings& settings, EncodedStart& start);
+Status EncodeStart(const Mesh& mesh, const EncoderSettings& settings, EncodedStart& start,
+                   std::span<const std::uint32_t> lowest = {});
 
 // Returns `start` as bytes: first the bytes that the stream begins with (magic, header packet, I-frame packet), then
-// the members that decoders do not need: the error bound as a little-endian f64, the order as one u32 per vertex, and
+// the members that decoders do not need: the error bound as a little-endian f64, the order as one u32 per index, and
 // the CRC-32 of bound and order.
 std::vector<std::uint8_t> WriteStreamStart(const EncodedStart& start);
 

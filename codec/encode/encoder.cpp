@@ -28,10 +28,11 @@ class Encoder::Impl {
 Encoder::Encoder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Encoder::~Encoder() = default;
 
-Status Encoder::Create(const Mesh& mesh, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder) {
+Status Encoder::Create(const Mesh& mesh, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder,
+                       std::span<const std::uint32_t> lowest) {
   const auto create = [&] {
     EncodedStart start;
-    SAC_RETURN_IF_ERROR(EncodeStart(mesh, settings, start));
+    SAC_RETURN_IF_ERROR(EncodeStart(mesh, settings, start, lowest));
     encoder.reset(new Encoder(std::make_unique<Impl>(std::move(start), settings)));
     return Status::Ok();
   };
@@ -42,10 +43,10 @@ Status Encoder::Send(std::span<const Vec3f> positions) {
   return impl_->Do([&](StreamEncoder& stream) { return stream.Send(positions); });
 }
 
-Status Encoder::BeginSegment(const Mesh& mesh) {
+Status Encoder::BeginSegment(const Mesh& mesh, std::span<const std::uint32_t> lowest) {
   const auto begin = [&] {
     EncodedStart start;
-    SAC_RETURN_IF_ERROR(EncodeStart(mesh, impl_->settings, start));
+    SAC_RETURN_IF_ERROR(EncodeStart(mesh, impl_->settings, start, lowest));
     return impl_->Do([&](StreamEncoder& stream) { return stream.BeginSegment(std::move(start)); });
   };
   return Contain(begin);

@@ -5,11 +5,11 @@
 #include <cstdint>
 #include <vector>
 
+#include "codec/encode/joined_mesh.h"
 #include "codec/i_frame.h"
 #include "codec/position_predictor.h"
 #include "format/i_frame_syntax.h"
 #include "format/sequence_header.h"
-#include "sac/mesh.h"
 #include "sac/status.h"
 
 namespace sac {
@@ -21,9 +21,9 @@ struct PositionTargets {
 };
 
 // Codes the mesh part of an I-frame: fills `syntax` but for the basis, decodes it again into `decoded`, and gives for
-// each decoded vertex its index in the input.
+// each vertex that decoders give out its index in the author's mesh. `targets` are those of the joined vertices.
 // kInvalidArgument when the mesh cannot be coded.
-Status EncodeIFrameMesh(const Mesh& input, const PositionTargets& targets, const SequenceHeader& header,
-                        IFrameSyntax& syntax, DecodedIFrame& decoded, std::vector<std::uint32_t>& input_of_vertex);
+Status EncodeIFrameMesh(const JoinedMesh& input, const PositionTargets& targets, const SequenceHeader& header,
+                        IFrameSyntax& syntax, DecodedIFrame& decoded, std::vector<std::uint32_t>& order);
 
 }  // namespace sac

@@ -13,11 +13,11 @@
 namespace sac {
 namespace {
 
-// The rows of `positions` in the order of decoded vertices.
-PositionMatrix InDecodedOrder(std::span<const Vec3f> positions, const std::vector<std::uint32_t>& order) {
-  PositionMatrix ordered(static_cast<Eigen::Index>(order.size()), 3);
-  for (std::size_t v = 0; v < order.size(); ++v) {
-    const Vec3f& p = positions[order[v]];
+// The rows `inputs` of `positions`, one for each coded vertex.
+PositionMatrix InDecodedOrder(std::span<const Vec3f> positions, const std::vector<std::uint32_t>& inputs) {
+  PositionMatrix ordered(static_cast<Eigen::Index>(inputs.size()), 3);
+  for (std::size_t v = 0; v < inputs.size(); ++v) {
+    const Vec3f& p = positions[inputs[v]];
     ordered.row(static_cast<Eigen::Index>(v)) << static_cast<double>(p[0]), static_cast<double>(p[1]),
         static_cast<double>(p[2]);
   }
@@ -31,12 +31,24 @@ StreamEncoder::StreamEncoder(EncodedStart start, const EncoderSettings& settings
       settings_(settings),
       info_(InfoOf(start_.header)),
       writer_(settings.index, settings.repeat_start) {
-  encoder_.emplace(start_.shape, start_.header, start_.max_error);
-  writer_.Start(WriteSequenceHeader(start_.header), start_.i_frame);
+  Begin();
   if (!settings.metadata.empty()) writer_.Skippable(PacketType::kMetadata, WriteMetadata(settings.metadata));
   for (const ExtraPacket& packet : settings.extra_packets) {
     writer_.Skippable(static_cast<PacketType>(packet.type), packet.payload);
   }
+}
+
+void StreamEncoder::Begin() {
+  inputs_ = start_.order;
+  if (const std::vector<std::uint32_t>& vertex_of_copy = start_.shape.vertex_of_copy; !vertex_of_copy.empty()) {
+    inputs_.assign(start_.header.vertices, static_cast<std::uint32_t>(vertex_of_copy.size()));
+    for (std::size_t i = 0; i < vertex_of_copy.size(); ++i) {
+      std::uint32_t& input = inputs_[vertex_of_copy[i]];
+      input = std::min(input, start_.order[i]);
+    }
+  }
+  encoder_.emplace(start_.shape, start_.header, start_.max_error);
+  writer_.Start(WriteSequenceHeader(start_.header), start_.i_frame);
 }
 
 Status StreamEncoder::AtFault(Status status, std::uint32_t frame, std::optional<std::uint32_t> vertex) {
@@ -48,7 +60,18 @@ Status StreamEncoder::AtFault(Status status, std::uint32_t frame, std::optional<
 }
 
 Status StreamEncoder::AtFault(Status status, std::uint32_t first) {
-  return AtFault(std::move(status), first + encoder_->failed_frame(), start_.order[encoder_->failed_vertex()]);
+  return AtFault(std::move(status), first + encoder_->failed_frame(), inputs_[encoder_->failed_vertex()]);
+}
+
+Status StreamEncoder::CheckJoined(std::span<const Vec3f> positions, std::uint32_t frame) {
+  const std::vector<std::uint32_t>& vertex_of_copy = start_.shape.vertex_of_copy;
+  for (std::size_t i = 0; i < vertex_of_copy.size(); ++i) {
+    const std::uint32_t copy = start_.order[i], joined = inputs_[vertex_of_copy[i]];
+    if (positions[copy] == positions[joined]) continue;
+    return AtFault(Status::InvalidArgument("parts from vertex " + std::to_string(joined) + ", which it is joined with"),
+                   frame, copy);
+  }
+  return Status::Ok();
 }
 
 Status StreamEncoder::Send(std::span<const Vec3f> positions) {
@@ -61,8 +84,9 @@ Status StreamEncoder::Send(std::span<const Vec3f> positions) {
                    frame, std::nullopt);
   }
   SAC_RETURN_IF_ERROR(AtFault(CheckFinite(positions), frame, std::nullopt));
+  SAC_RETURN_IF_ERROR(CheckJoined(positions, frame));
   if (settings_.bounds) AddBounds(positions);
-  PositionMatrix ordered = InDecodedOrder(positions, start_.order);
+  PositionMatrix ordered = InDecodedOrder(positions, inputs_);
   if (settings_.low_delay) return Latch(EncodeFrame(std::move(ordered)));
   waiting_.push_back(std::move(ordered));
   return IsFull(static_cast<std::uint32_t>(waiting_.size())) ? Latch(EncodeGroup()) : Status::Ok();
@@ -142,8 +166,7 @@ Status StreamEncoder::BeginSegment(EncodedStart start) {
   encoder_.reset();
   start_ = std::move(start);
   info_ = InfoOf(start_.header);
-  encoder_.emplace(start_.shape, start_.header, start_.max_error);
-  writer_.Start(WriteSequenceHeader(start_.header), start_.i_frame);
+  Begin();
   return Status::Ok();
 }
 

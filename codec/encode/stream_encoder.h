@@ -52,6 +52,10 @@ class StreamEncoder {
   // The same for a failure of the group encoder, whose group begins with frame `first`.
   Status AtFault(Status status, std::uint32_t first);
 
+  // Finds inputs_ and begins to code frames of start_.
+  void Begin();
+  // Checks that vertices which are joined coincide in the frame.
+  Status CheckJoined(std::span<const Vec3f> positions, std::uint32_t frame);
   // Whether a group of `frames` frames can take no further frame.
   bool IsFull(std::uint32_t frames) const;
   // Tells the caller that `frames` frames are coded. Returns kCancelled when the caller wants to stop.
@@ -72,6 +76,7 @@ class StreamEncoder {
   void EndOpenGroup();
 
   EncodedStart start_;
+  std::vector<std::uint32_t> inputs_;  // of each coded vertex the first of those in the input
   const EncoderSettings settings_;
   StreamInfo info_;
   std::optional<GroupEncoder> encoder_;  // refers to start_

@@ -15,7 +15,7 @@ from pathlib import Path
 try:
     import numpy as np
 
-    from sacdec import group_structure, handles, harmonics, mixing, positions, residuals, shape, vertices
+    from sacdec import copies, group_structure, handles, harmonics, mixing, positions, residuals, shape, vertices
     from sacdec.byte_reader import ByteReader
     from sacdec.end_packet import End, Index, parse_end
     from sacdec.errors import StreamError
@@ -199,6 +199,16 @@ class Positions(unittest.TestCase):
             position, surroundings.miss[v] = coding.vertex(known)
             self.assertEqual(position, integers(words[17:20]))
             surroundings.x[v] = surroundings.last = [16 * coordinate for coordinate in position]
+        decoder.finish()
+
+
+class Copies(unittest.TestCase):
+    def test_copies(self) -> None:
+        *lines, code = example("copies")
+        triangles = [integers(line.split()[1:4]) for line in lines]
+        decoder = RangeDecoder(bytes.fromhex(code.removeprefix("bytes")), rule=30)
+        decoded = copies.CopyDecoder(decoder, triangles, [[None] * 3 for _ in triangles]).decode()
+        self.assertEqual(decoded, [integers(line.split()[5:8]) for line in lines])
         decoder.finish()
 
 

@@ -38,10 +38,10 @@ def sac_decode(sac: str, stream: Path) -> tuple[np.ndarray, np.ndarray]:
 def own_decode(clip: Clip) -> tuple[np.ndarray, np.ndarray]:
     """This decoder's, in the author's order if the stream keeps that, as `sac decode` gives them."""
     mesh = clip.mesh
-    positions = np.array(clip.frames).reshape(-1, len(mesh.grid), 3)
+    positions = np.array(clip.frames).reshape(-1, len(mesh.vertex_of_copy), 3)
     if mesh.order is None:
-        return positions, mesh.triangles
-    return positions[:, np.argsort(mesh.order)], np.array(mesh.order)[mesh.triangles]
+        return positions, mesh.copy_triangles
+    return positions[:, np.argsort(mesh.order)], np.array(mesh.order)[mesh.copy_triangles]
 
 
 def compare(sac: str, stream: Path) -> bool:

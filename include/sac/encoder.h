@@ -45,7 +45,11 @@ struct EncoderSettings {
   // units. It is only carried: decoders give it out beside the positions (StreamInfo::offset). Finite.
   std::array<double, 3> offset = {};
   bool keep_order = false;  // put the input's vertex order in the stream
-  bool index = true;        // end streams of several groups with where they begin
+  // Whether vertices that coincide are coded as one, so that no seam opens between them; decoders give out as many as
+  // the input has. True: an Encoder joins those of the mesh that it is created with, and frames in which they part are
+  // refused. EncodeClip() joins those that coincide in all frames, unless this is false.
+  std::optional<bool> join;
+  bool index = true;  // end streams of several groups with where they begin
   // Header and I-frame come again before every so many groups, for those who join in the middle; 0: never.
   std::uint32_t repeat_start = 0;
   // Groups are coded in layers that can be dropped from the end, a coarser stream each time: in the group's own packet
@@ -88,22 +92,25 @@ class Encoder {
   // those of the first frame, or any near them, such as EncodeClip() finds. Normals should be the first frame's.
   // kInvalidArgument for settings out of range, a mesh without vertices, a
   // triangle of a missing vertex, attributes that do not fit the mesh or coordinates that are not finite.
-  static Status Create(const Mesh& mesh, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder);
+  // `lowest` says which vertices are joined (EncoderSettings::join), whatever the settings do: for each the lowest that
+  // it coincides with in all frames, which may be itself. Those without triangles are not.
+  static Status Create(const Mesh& mesh, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder,
+                       std::span<const std::uint32_t> lowest = {});
   ~Encoder();
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;
 
   // The next frame, in the vertex order of the mesh, model units. kInvalidArgument when the number of vertices
-  // differs or a coordinate is not finite; the encoder can go on with another frame then. kInvalidArgument, too, when
-  // the motion cannot be coded or the bound cannot be held, here or in a frame before: no more frames can be sent, but
-  // Finish() still ends the stream after the last group, or with low_delay the last frame, that was coded. The message
-  // says which frame and vertex it is.
+  // differs, a coordinate is not finite or vertices part that are joined; the encoder can go on with another frame
+  // then. kInvalidArgument, too, when the motion cannot be coded or the bound cannot be held, here or in a frame
+  // before: no more frames can be sent, but Finish() still ends the stream after the last group, or with low_delay the
+  // last frame, that was coded. The message says which frame and vertex it is.
   Status Send(std::span<const Vec3f> positions);
   // Goes on with frames of another mesh, such as one of other triangles: a new segment of the stream, in which the
   // frames that are sent next are coded as in a stream of their own. Decoders tell that the mesh has changed. Status as
   // of Create(), and as of Send() for the frames before; after a failure of Create()'s kind the encoder goes on with
   // the mesh before.
-  Status BeginSegment(const Mesh& mesh);
+  Status BeginSegment(const Mesh& mesh, std::span<const std::uint32_t> lowest = {});
   // Ends the stream. It fails with Send()'s failure when nothing was coded before.
   Status Finish();
 
@@ -115,7 +122,7 @@ class Encoder {
   // What has been coded since the last call.
   std::vector<std::uint8_t> TakeBytes();
 
-  // The index in the input of each decoded vertex of the last segment.
+  // The index in the input of each vertex that decoders give out, of the last segment.
   const std::vector<std::uint32_t>& order() const;
   const StreamInfo& info() const;
   const StreamBytes& stream_bytes() const;

@@ -85,6 +85,10 @@ typedef struct sac_encoder_settings {
   int32_t first_frame;      /* the author's number of frame 0 */
   uint32_t has_first_frame; /* 1: it is said */
   uint32_t bounds;          /* 1: puts the box of all frames, and of each group, at the end of the stream */
+  /* Vertices that coincide are coded as one, so that no seam opens between them; decoders give out as many as the mesh
+   * has. -1: those that coincide in all frames, for sac_encode_clip() alone; 1: also those that coincide in the mesh of
+   * sac_encoder_open(), and frames in which they part are refused; 0: none. */
+  int32_t join;
 } sac_encoder_settings;
 
 /* The mesh of a clip; set all of it to 0 before. Its positions are the first frame's, or any near them for

@@ -137,7 +137,7 @@ TEST_F(ObjReaderTest, PointsAndSoupsAreTold) {
   EXPECT_EQ(
       ReadFile("a.obj", soup).warnings,
       (Warnings{"a.obj: no triangle shares a vertex with another: 6 vertices at 4 places; merge them (weld, merge "
-                "by distance) before the export, for far fewer bytes"}));
+                "by distance) before the export, for fewer bytes"}));
   EXPECT_EQ(ReadFile("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n").warnings, Warnings{});
 }
 

@@ -22,6 +22,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   FUZZ_REQUIRE(mesh.uv_triangles.empty() || mesh.uv_triangles.size() == mesh.triangles.size());
   FUZZ_REQUIRE(below(mesh.normal_triangles, mesh.normals.size()));
   FUZZ_REQUIRE(mesh.normal_triangles.empty() || mesh.normal_triangles.size() == mesh.triangles.size());
-  FUZZ_REQUIRE(mesh.colors.empty() || mesh.colors.size() == mesh.entries);
+  FUZZ_REQUIRE(below(mesh.color_triangles, mesh.colors.size()));
+  FUZZ_REQUIRE(mesh.color_triangles.empty() || mesh.color_triangles.size() == mesh.triangles.size());
   return 0;
 }

@@ -151,6 +151,7 @@ class EncoderSettings(ctypes.Structure):
         ("first_frame", c_int32),
         ("has_first_frame", c_uint32),
         ("bounds", c_uint32),
+        ("join", c_int32),
     ]
 
 

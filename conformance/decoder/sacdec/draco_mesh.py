@@ -23,14 +23,17 @@ WANTED = {POSITION: (INT32, 3), NORMAL: (FLOAT32, 3), COLOR: (UINT8, 4), TEX_COO
 class DracoMesh:
     """Entries and triangles of spec.md 5.1; no entries and no triangles if there is no Draco mesh.
 
-    `triangles` [m, 3] are entries. `normals` [m, 3, 3], those of the corners, `colors` [entries, 4], `uvs` [values, 2]
-    and `uv_triangles` [m, 3] are None if the mesh has none.
+    `triangles` [m, 3] are entries. `normals` [m, 3, 3] and `colors` [m, 3, 4], those of the corners, with the indices of
+    their values `normal_indices` and `color_indices` [m, 3], `uvs` [values, 2] and `uv_triangles` [m, 3] are None if the
+    mesh has none.
     """
 
     entries: int = 0
     triangles: np.ndarray = field(default_factory=lambda: np.zeros((0, 3), np.int64))
     normals: np.ndarray | None = None
+    normal_indices: np.ndarray | None = None
     colors: np.ndarray | None = None
+    color_indices: np.ndarray | None = None
     uvs: np.ndarray | None = None
     uv_triangles: np.ndarray | None = None
 
@@ -83,14 +86,6 @@ def _floats(attribute: dict) -> np.ndarray:
     return bits.view(np.float32)
 
 
-def _at_last_corner(entries: int, corner_entries: np.ndarray, corner_values: np.ndarray) -> np.ndarray:
-    """An entry's colour "is the one of the last of its corners"; zeros without a corner."""
-    result = np.zeros((entries, corner_values.shape[-1]), corner_values.dtype)
-    for entry, value in zip(corner_entries.ravel(), corner_values.reshape(-1, corner_values.shape[-1])):
-        result[entry] = value
-    return result
-
-
 def decode_draco_mesh(data: bytes, triangles: int) -> DracoMesh:
     """spec.md 5.1; `triangles` is that of the sequence header. The rules are R31 to R34 and R36."""
     if not data:
@@ -116,10 +111,11 @@ def decode_draco_mesh(data: bytes, triangles: int) -> DracoMesh:
         entries=len(attributes[POSITION]["values"]), triangles=_corner_indices(attributes[POSITION], points)
     )
     if normals := attributes.get(NORMAL):
-        mesh.normals = _floats(normals)[_corner_indices(normals, points)]
+        mesh.normal_indices = _corner_indices(normals, points)
+        mesh.normals = _floats(normals)[mesh.normal_indices]
     if colors := attributes.get(COLOR):
-        at_corners = np.array(colors["values"], np.uint8).reshape(-1, 4)[_corner_indices(colors, points)]
-        mesh.colors = _at_last_corner(mesh.entries, mesh.triangles, at_corners)
+        mesh.color_indices = _corner_indices(colors, points)
+        mesh.colors = np.array(colors["values"], np.uint8).reshape(-1, 4)[mesh.color_indices]
     if uvs := attributes.get(TEX_COORD):
         mesh.uvs = _floats(uvs)
         mesh.uv_triangles = _corner_indices(uvs, points)

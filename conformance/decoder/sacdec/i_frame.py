@@ -120,12 +120,13 @@ def _order(decoder: RangeDecoder, header: SequenceHeader) -> list[int]:
     difference = SignedModels()
     order: list[int] = []
     seen = set()
-    for _ in range(header.vertices):
+    count = header.vertices + header.copies
+    for _ in range(count):
         expected = order[-1] + 1 if order else 0
-        if expected == header.vertices:
+        if expected == count:
             expected = 0
         index = expected + difference.decode(decoder)
-        require(0 <= index < header.vertices and index not in seen, 29, "the order is no permutation")
+        require(0 <= index < count and index not in seen, 29, "the order is no permutation")
         seen.add(index)
         order.append(index)
     return order

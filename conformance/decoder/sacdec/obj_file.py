@@ -15,8 +15,8 @@ def _lines(keyword: str, rows: np.ndarray) -> list[str]:
 
 
 def _faces(mesh: Mesh, with_normals: bool) -> list[str]:
-    normals = mesh.triangles if mesh.normal_triangles is None else mesh.normal_triangles
-    columns = [mesh.triangles]
+    normals = mesh.copy_triangles if mesh.normal_triangles is None else mesh.normal_triangles
+    columns = [mesh.copy_triangles]
     pattern = "%d"
     if mesh.uv_triangles is not None:
         columns.append(mesh.uv_triangles)

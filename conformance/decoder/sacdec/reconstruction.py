@@ -120,7 +120,7 @@ class Reconstruction:
         self.previous = self.m0  # x' of the frame before in the group
 
     def frame(self, coded: CodedFrame) -> np.ndarray:
-        """spec.md 6.5: positions [n, 3] of a frame. A group's frames must come in display order."""
+        """spec.md 6.5: positions of the copies in a frame. A group's frames must come in display order."""
         header = self.header
         from_m0 = header.reference_shape == 0 or coded.is_intra
         moved = [z + d for z, d in zip(self._motion(coded, from_m0), self._displacement(coded))]
@@ -133,7 +133,7 @@ class Reconstruction:
         positions = (x - self.centre) @ rotation.T + self.centre + translation
         with np.errstate(over="ignore", invalid="ignore"):
             require(bool(np.all(np.isfinite(positions.astype(np.float32)))), 57, "a position beyond binary32")
-        return positions
+        return positions[self.mesh.vertex_of_copy]
 
     def _motion(self, coded: CodedFrame, from_m0: bool) -> list[np.ndarray]:
         """z of each component before the displacement plane: spec.md 6.5.3."""

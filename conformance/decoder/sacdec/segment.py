@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from . import harmonics
+from .copies import decode_copies
 from .draco_mesh import decode_draco_mesh
 from .group import CodedFrame, plane_rows
 from .i_frame import SideInformation, parse_side_information, split_i_frame
@@ -14,12 +15,12 @@ from .positions import PositionDecoder
 from .reconstruction import Reconstruction, first_shape
 from .sequence_header import SequenceHeader
 from .shape import edge_weights, mesh_edges, vertex_masses
-from .vertices import Mesh, build_mesh, join_entries
+from .vertices import Joined, Mesh, all_triangles, build_mesh, check_parts, join_entries
 
 
 @dataclass
 class Segment:
-    """Frames that share a mesh: positions [n, 3] in display order, the first is frame `first_frame` of the clip."""
+    """Frames that share a mesh: positions of its copies [.., 3] in display order, the first is frame `first_frame` of the clip."""
 
     header: SequenceHeader
     mesh: Mesh
@@ -66,6 +67,10 @@ def _decode_mesh(header: SequenceHeader, i_frame: bytes) -> tuple[Mesh, SideInfo
     if mesh_bytes:
         coding = PositionDecoder(decoder, header.position_bits, side.position_step, side.position_slope)
         coded = coding.decode(count, vertex[draco.triangles].reshape(-1, 3))
+    triangles = all_triangles(draco, vertex, side)
+    check_parts(draco, side, count + len(side.loose_vertices), len(triangles), header)
+    copies, counts = np.zeros_like(triangles), np.ones(header.vertices, np.int64)
+    if header.copies:
+        copies, counts = decode_copies(decoder, draco, triangles, header.vertices, header.copies)
     decoder.finish()
-    mesh = build_mesh(draco, vertex, coded, side, header.vertices, header.triangles, header.patch_size)
-    return mesh, side
+    return build_mesh(draco, Joined(coded, triangles, copies, counts), side, header.patch_size), side

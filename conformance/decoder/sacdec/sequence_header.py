@@ -19,6 +19,7 @@ class SequenceHeader:
     position_bits: int
     level_growth: int
     vertices: int
+    copies: int
     triangles: int
     harmonics: int
     patch_size: int
@@ -36,7 +37,7 @@ class SequenceHeader:
 
 
 def parse_sequence_header(payload: bytes, limits: Limits) -> SequenceHeader:
-    """spec.md 4, in the order of the table there; the rules are R11 to R23, R61, R62 and R68."""
+    """spec.md 4, in the order of the table there; the rules are R11 to R23, R61, R62, R68 and R74."""
     reader = ByteReader(payload, end_rule=12, varint_rule=12)
     version = (reader.u8(), reader.u8())
     require(version == VERSION, 11, "version %d.%d" % version)
@@ -45,6 +46,7 @@ def parse_sequence_header(payload: bytes, limits: Limits) -> SequenceHeader:
         position_bits=reader.u8(),
         level_growth=reader.u8(),
         vertices=reader.varint(),
+        copies=reader.varint(),
         triangles=reader.varint(),
         harmonics=reader.varint(),
         patch_size=reader.varint(),
@@ -81,6 +83,7 @@ def _check(header: SequenceHeader, limits: Limits) -> None:
     require(1 <= header.position_bits <= 24, 14, "position_bits is not from 1 to 24")
     require(64 <= header.level_growth <= 128, 15, "level_growth is not from 64 to 128")
     require(header.vertices >= 1, 16, "no vertices")
+    require(header.copies <= 3 * header.triangles, 74, f"{header.copies} copies")
     require(header.harmonics >= 1, 17, "no harmonics")
     require(header.harmonics <= header.vertices, 18, "more harmonics than vertices")
     require(1 <= header.patch_size <= 1024, 61, "patch_size is not from 1 to 1024")
@@ -91,5 +94,6 @@ def _check(header: SequenceHeader, limits: Limits) -> None:
         require(math.isfinite(step) and step > 0, 21, "cell or a step is not finite or not above 0")
     for step in (header.detail_step, header.correction_step):
         require(math.isfinite(step) and step >= 0, 62, "detail_step or correction_step is not finite or below 0")
-    require(header.vertices <= limits.vertices, 22, f"{header.vertices} vertices")
+    given_out = header.vertices + header.copies
+    require(given_out <= limits.vertices, 22, f"{given_out} vertices")
     require(header.triangles <= limits.triangles, 23, f"{header.triangles} triangles")

@@ -19,13 +19,13 @@ def summary(clip: Clip) -> dict:
     mesh = clip.mesh
     result = {
         "frames": len(clip.frames),
-        "vertices": len(mesh.grid),
+        "vertices": len(mesh.vertex_of_copy),
         "triangles": len(mesh.triangles),
-        "triangles_crc32": words_crc32(mesh.triangles),
+        "triangles_crc32": words_crc32(mesh.copy_triangles),
         "coefficients_crc32": f"{clip.coefficients_crc32:08x}",
     }
     if len(clip.segments) > 1:
-        result["segments"] = [[segment.first_frame, len(segment.mesh.grid)] for segment in clip.segments]
+        result["segments"] = [[segment.first_frame, len(segment.mesh.vertex_of_copy)] for segment in clip.segments]
     if any(clip.header.offset):
         result["offset"] = list(clip.header.offset)
     if mesh.uvs is not None:

@@ -9,19 +9,24 @@ import numpy as np
 from .draco_mesh import DracoMesh
 from .errors import require
 from .i_frame import SideInformation
+from .sequence_header import SequenceHeader
 
 
 @dataclass
 class Mesh:
     """The mesh of a clip, in the final numbering of 5.3.
 
-    Positions are `grid` [n, 3], integers. Components and patches are runs of vertices, from `components[i]` to
-    `components[i + 1]` - 1. Attributes are None where there are none. `normals` are those of vertices, or, if
-    `normal_triangles` [m, 3] is there, those that it gives the indices of for corners.
+    Positions are `grid` [n, 3], integers, `triangles` [m, 3] those of vertices. What is given out are copies:
+    `vertex_of_copy` has the vertex of each, `copy_triangles` the triangles of copies. Components and patches are runs of
+    vertices, from `components[i]` to `components[i + 1]` - 1. Attributes are those of copies, None where there are none.
+    `normals` are those of copies, or, if `normal_triangles` [m, 3] is there, those that it gives the indices of for
+    corners.
     """
 
     grid: np.ndarray
     triangles: np.ndarray
+    vertex_of_copy: np.ndarray
+    copy_triangles: np.ndarray
     components: list[int]
     patches: list[int]
     normals: np.ndarray | None = None
@@ -101,108 +106,141 @@ def _numbering(grid: np.ndarray, triangles: np.ndarray, patch_size: int) -> tupl
     return final, components, patches
 
 
-def _loose_uv_triangles(mesh: DracoMesh, vertex: np.ndarray, loose: Sequence[Sequence[int]]) -> np.ndarray:
-    """spec.md 5.3, "Texture coordinates": a corner of a loose triangle takes its vertex's first corner's index, or 0."""
+def _number_copies(final: list[int], counts: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+    """spec.md 5.3, "Output": the final vertex of each copy; the number of the first copy of each vertex of step 1, as it
+    is output; and the copies of step 1, where a vertex's follow those of the vertex before, by their numbers in the
+    output."""
+    of_final = counts[final]
+    vertex_of_copy = np.repeat(np.arange(len(final)), of_final)
+    first = np.empty(len(final), np.int64)
+    first[final] = np.cumsum(of_final) - of_final
+    output = np.empty(len(vertex_of_copy), np.int64)
+    for vertex, begin in enumerate(np.cumsum(counts) - counts):
+        output[first[vertex] + np.arange(counts[vertex])] = begin + np.arange(counts[vertex])
+    return vertex_of_copy, first, output
+
+
+def _loose_uv_triangles(draco: DracoMesh, corners: np.ndarray) -> np.ndarray:
+    """spec.md 5.3, "Texture coordinates": a corner of a loose triangle takes its copy's first corner's index, or 0.
+    `corners` are the copies of all triangles' corners."""
+    count = len(draco.triangles)
     first: dict[int, int] = {}
-    for corner, uv in zip(vertex[mesh.triangles].ravel().tolist(), mesh.uv_triangles.ravel().tolist()):
+    for corner, uv in zip(corners[:count].ravel().tolist(), draco.uv_triangles.ravel().tolist()):
         first.setdefault(corner, uv)
+    loose = corners[count:].tolist()
     return np.array([[first.get(corner, 0) for corner in triangle] for triangle in loose], np.int64).reshape(-1, 3)
 
 
-def _colors(count: int, of_entries: np.ndarray | None, vertex: np.ndarray, loose: list) -> np.ndarray | None:
-    """spec.md 5.3, "Colours": of the last of a vertex's entries, or the loose vertex's own (None: it has none)."""
-    has_loose = any(value is not None for value in loose)
-    if of_entries is None and not has_loose:
+def _colors(draco: DracoMesh, corners: np.ndarray, copies: int, own: dict[int, tuple]) -> np.ndarray | None:
+    """spec.md 5.3, "Colours": of the last of a copy's corners, or its loose vertex's own."""
+    if draco.colors is None and not own:
         return None
-    result = np.zeros((count, 4), np.int64)
-    if of_entries is not None:
-        for entry, target in enumerate(vertex):
-            result[target] = of_entries[entry]
-    for i, value in enumerate(loose):
-        if value is not None:
-            result[count - len(loose) + i] = value
+    result = np.zeros((copies, 4), np.int64)
+    for copy, value in own.items():
+        result[copy] = value
+    if draco.colors is not None:
+        for copy, value in zip(corners[: len(draco.triangles)].ravel(), draco.colors.reshape(-1, 4)):
+            result[copy] = value
     return result
 
 
 def _corner_normals(
-    draco: DracoMesh, triangles: np.ndarray, own: dict[int, tuple[float, ...]]
+    draco: DracoMesh, corners: np.ndarray, own: dict[int, tuple[float, ...]]
 ) -> list[tuple[int, bytes]]:
-    """spec.md 5.3, "Normals": the vertex and the bits of the normal of each corner. `triangles` are all, by the vertices
-    of step 1, `own` the loose vertices' normals."""
+    """spec.md 5.3, "Normals": the copy and the bits of the normal of each corner. `own` are the loose vertices' normals,
+    by their copies."""
     zero = np.zeros(3, np.float32).tobytes()
-    first = {vertex: np.array(normal, np.float32).tobytes() for vertex, normal in own.items()}
-    corners = triangles[: len(draco.triangles)].ravel().tolist()
-    of_draco = [zero] * len(corners)
+    first = {copy: np.array(normal, np.float32).tobytes() for copy, normal in own.items()}
+    of_triangles = corners[: len(draco.triangles)].ravel().tolist()
+    of_draco = [zero] * len(of_triangles)
     if draco.normals is not None:
         of_draco = [normal.tobytes() for normal in draco.normals.reshape(-1, 3)]
-    for vertex, normal in reversed(list(zip(corners, of_draco))):
-        first[vertex] = normal
-    of_loose = [first.get(vertex, zero) for vertex in triangles[len(draco.triangles) :].ravel().tolist()]
-    return list(zip(triangles.ravel().tolist(), of_draco + of_loose))
+    for copy, normal in reversed(list(zip(of_triangles, of_draco))):
+        first[copy] = normal
+    of_loose = [first.get(copy, zero) for copy in corners[len(draco.triangles) :].ravel().tolist()]
+    return list(zip(corners.ravel().tolist(), of_draco + of_loose))
 
 
 def _normals(
-    draco: DracoMesh, triangles: np.ndarray, count: int, loose: list
+    draco: DracoMesh, corners: np.ndarray, copies: int, own: dict[int, tuple[float, ...]]
 ) -> tuple[np.ndarray | None, np.ndarray | None]:
-    """spec.md 5.3, "Normals": those of vertices, by the numbers of step 1, and None; or those of corners and, for each
-    corner, the index of its own. `loose` are the loose vertices' normals (None: they have none)."""
-    own = {count - len(loose) + i: normal for i, normal in enumerate(loose) if normal is not None}
+    """spec.md 5.3, "Normals": those of copies and None; or those of corners and, for each corner, the index of its
+    own."""
     if draco.normals is None and not own:
         return None, None
-    corners = _corner_normals(draco, triangles, own)
-    bits = dict(corners)
-    if all(bits[vertex] == normal for vertex, normal in corners):
-        normals = np.zeros((count, 3), np.float32)
-        for vertex, normal in own.items():
-            normals[vertex] = normal
-        for vertex, normal in bits.items():
-            normals[vertex] = np.frombuffer(normal, np.float32)
+    normal_of_corner = _corner_normals(draco, corners, own)
+    bits = dict(normal_of_corner)
+    if all(bits[copy] == normal for copy, normal in normal_of_corner):
+        normals = np.zeros((copies, 3), np.float32)
+        for copy, normal in own.items():
+            normals[copy] = normal
+        for copy, normal in bits.items():
+            normals[copy] = np.frombuffer(normal, np.float32)
         return normals, None
     numbers: dict[tuple[int, bytes], int] = {}
-    indices = [numbers.setdefault(corner, len(numbers)) for corner in corners]
+    indices = [numbers.setdefault(corner, len(numbers)) for corner in normal_of_corner]
     normals = np.frombuffer(b"".join(normal for _, normal in numbers), np.float32).reshape(-1, 3)
     return normals, np.array(indices, np.int64).reshape(-1, 3)
 
 
-def build_mesh(
-    draco: DracoMesh,
-    vertex: np.ndarray,
-    coded: np.ndarray,
-    side: SideInformation,
-    vertices: int,
-    triangles: int,
-    patch_size: int,
-) -> Mesh:
-    """spec.md 5.3: the mesh from Draco's, the vertices of its entries, their grid positions `coded` [.., 3], and the
-    side information. Rules R39 to R43."""
-    loose = side.loose_vertices
-    if loose:
+@dataclass
+class Joined:
+    """What 5.3 step 1 makes: the grid positions of Draco's vertices [.., 3], all triangles [m, 3] by the numbers of this
+    step, the copy of each of their corners [m, 3] and the number of copies of each vertex."""
+
+    coded: np.ndarray
+    triangles: np.ndarray
+    copies: np.ndarray
+    counts: np.ndarray
+
+
+def all_triangles(draco: DracoMesh, vertex: np.ndarray, side: SideInformation) -> np.ndarray:
+    """spec.md 5.3 step 1: Draco's triangles, then the loose ones. `vertex` is that of each entry."""
+    loose = np.array(side.loose_triangles, np.int64).reshape(-1, 3)
+    return np.concatenate([vertex[draco.triangles].reshape(-1, 3), loose])
+
+
+def check_parts(draco: DracoMesh, side: SideInformation, vertices: int, triangles: int, header: SequenceHeader) -> None:
+    """Rules R39 to R41, of so many vertices and triangles."""
+    if side.loose_vertices:
         require(draco.normals is None or side.has_normals == 1, 39, "loose vertices without normals")
         require(draco.colors is None or side.has_colors == 1, 39, "loose vertices without colours")
-    count = len(coded) + len(loose)
-    require(count == vertices, 40, f"{count} vertices")
-    all_triangles = np.concatenate(
-        [vertex[draco.triangles].reshape(-1, 3), np.array(side.loose_triangles, np.int64).reshape(-1, 3)]
-    )
-    require(len(all_triangles) == triangles, 41, f"{len(all_triangles)} triangles")
+    require(vertices == header.vertices, 40, f"{vertices} vertices")
+    require(triangles == header.triangles, 41, f"{triangles} triangles")
 
-    grid = np.concatenate([coded.reshape(-1, 3), np.array([v.position for v in loose], np.int64).reshape(-1, 3)])
-    final, components, patches = _numbering(grid, all_triangles, patch_size)
+
+def build_mesh(draco: DracoMesh, joined: Joined, side: SideInformation, patch_size: int) -> Mesh:
+    """spec.md 5.3 from step 2 on. Rules R42 and R43."""
+    loose = side.loose_vertices
+    of_loose = np.array([v.position for v in loose], np.int64).reshape(-1, 3)
+    grid = np.concatenate([joined.coded.reshape(-1, 3), of_loose])
+    final, components, patches = _numbering(grid, joined.triangles, patch_size)
     sizes = np.diff(components)
     require(len(sizes) == len(side.harmonics), 42, f"{len(sizes)} components")
     require(bool(np.all(sizes >= side.harmonics)), 43, "a component has more harmonics than vertices")
 
-    number = np.empty(count, np.int64)  # the final number of each vertex of step 1
-    number[final] = np.arange(count)
-    mesh = Mesh(grid[final], number[all_triangles], components, patches, order=side.order)
-    mesh.normals, mesh.normal_triangles = _normals(draco, all_triangles, count, [v.normal for v in loose])
+    number = np.empty(len(grid), np.int64)  # the final number of each vertex of step 1
+    number[final] = np.arange(len(grid))
+    vertex_of_copy, first, output = _number_copies(final, joined.counts)
+    copy_triangles = first[joined.triangles] + joined.copies
+    mesh = Mesh(
+        grid[final], number[joined.triangles], vertex_of_copy, copy_triangles, components, patches, order=side.order
+    )
+    begin = np.cumsum(joined.counts) - joined.counts  # the first copy of each vertex, both by the numbers of step 1
+    corners = begin[joined.triangles] + joined.copies
+    copies_of_loose = [
+        (begin[v] + i, own)
+        for v, own in enumerate(loose, len(grid) - len(loose))
+        for i in range(joined.counts[v])
+    ]
+    own_normals = {copy: v.normal for copy, v in copies_of_loose if v.normal is not None}
+    own_colors = {copy: v.color for copy, v in copies_of_loose if v.color is not None}
+    mesh.normals, mesh.normal_triangles = _normals(draco, corners, len(vertex_of_copy), own_normals)
     if mesh.normals is not None and mesh.normal_triangles is None:
-        mesh.normals = mesh.normals[final]
-    colors = _colors(count, draco.colors, vertex, [v.color for v in loose])
-    mesh.colors = None if colors is None else colors[final]
+        mesh.normals = mesh.normals[output]
+    colors = _colors(draco, corners, len(vertex_of_copy), own_colors)
+    mesh.colors = None if colors is None else colors[output]
     if draco.uvs is not None:
         mesh.uvs = draco.uvs
-        mesh.uv_triangles = np.concatenate(
-            [draco.uv_triangles, _loose_uv_triangles(draco, vertex, side.loose_triangles)]
-        )
+        mesh.uv_triangles = np.concatenate([draco.uv_triangles, _loose_uv_triangles(draco, corners)])
     return mesh
