@@ -120,7 +120,11 @@ Status ComponentPoser::Fit(std::span<const Vec3f> shape, std::vector<float>& wei
   }
   const PositionMatrix target = MatrixOf(Positions(shape.begin(), shape.end()));
   if (!target.allFinite()) return Status::InvalidArgument("a coordinate is not finite");
-  weights = FloatsOf(impl_->model.Fit(target, pose));
+  try {
+    weights = FloatsOf(impl_->model.Fit(target, pose));
+  } catch (const std::bad_alloc&) {  // the first fit of gradients takes the derivatives of all vertices
+    return Status::Limit("not enough memory for a fit");
+  }
   return Status::Ok();
 }
 
