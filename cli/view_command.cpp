@@ -157,6 +157,11 @@ Status Serve(const ViewOptions& options) {
 
   httplib::Server server;
   server.set_pre_routing_handler(RefuseOtherHosts);
+  // The default would share a port with whoever has it.
+  server.set_socket_options([](socket_t socket) {
+    const int yes = 1;
+    setsockopt(socket, SOL_SOCKET, SO_REUSEADDR, &yes, sizeof(yes));
+  });
   server.set_default_headers({{"Cache-Control", "no-store"}});
   server.set_file_extension_and_mimetype_mapping("wasm", "application/wasm");
   // The name is the page's title; any name is answered with the one stream.

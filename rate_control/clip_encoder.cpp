@@ -97,6 +97,7 @@ Status ClipEncoder::FindJoined() {
     CoincidentVertices coincident;
     const Positions& first = clip_.mesh().positions;
     if (CheckFinite(first).ok()) coincident.Add(first);
+    if (coincident.any() && joined_.empty()) SAC_RETURN_IF_ERROR(clip_.Rewind());
     Positions frame;
     // What is wrong with a frame is said when it is to be coded, with the frames before it.
     for (bool last = false; coincident.any() && clip_.Next(frame, last).ok() && !last;) {
@@ -106,7 +107,7 @@ Status ClipEncoder::FindJoined() {
     joined_.push_back(coincident.Lowest());
     SAC_RETURN_IF_ERROR(clip_.NextSegment(end));
   }
-  return clip_.Rewind();
+  return joined_.size() > 1 ? clip_.Rewind() : Status::Ok();
 }
 
 Status ClipEncoder::ChooseShapes(const EncoderSettings& settings, std::optional<ChosenShape>& whole) {

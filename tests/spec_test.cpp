@@ -39,6 +39,7 @@ namespace {
 const std::set<std::string> kRun = {"bit-model",
                                     "classes",
                                     "coefficients",
+                                    "copies",
                                     "crc32",
                                     "deformation-gradient",
                                     "generic",
