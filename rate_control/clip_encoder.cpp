@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -56,6 +57,11 @@ class ClipEncoder {
  public:
   ClipEncoder(ClipReader& clip, const ClipEncoding& encoding)
       : clip_(clip), encoding_(encoding), rounds_(RoundsOf(encoding)), settings_(encoding.encoder) {
+    if (encoding.part && (encoding.part->first_frame > 0 || settings_.metadata.first_frame)) {
+      const std::int64_t number = std::int64_t{encoding.part->first_frame} + settings_.metadata.first_frame.value_or(0);
+      constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+      settings_.metadata.first_frame = static_cast<std::int32_t>(std::min(number, kMost));
+    }
     if (settings_.frame_rate_numerator == 0 && clip.rate().numerator != 0) {
       settings_.frame_rate_numerator = clip.rate().numerator;
       settings_.frame_rate_denominator = clip.rate().denominator;
@@ -138,7 +144,9 @@ Status ClipEncoder::Search() {
 
 Status ClipEncoder::Encode(const ByteSink& sink, EncodedClip& result) {
   settings_.progress = ProgressOf(encoding_, 0);
-  return EncodeAndMeasure(clip_, settings_, {shapes_, encoding_.measure || trials_ > 0, sink, nullptr}, result);
+  return EncodeAndMeasure(
+      clip_, settings_,
+      {shapes_, encoding_.measure || trials_ > 0, sink, nullptr, encoding_.part ? &*encoding_.part : nullptr}, result);
 }
 
 Status ClipEncoder::EncodeFromChosenShapes(const ByteSink& sink, EncodedClip& result) {
@@ -175,6 +183,7 @@ Status EncodeClip(ClipReader& clip, const ClipEncoding& encoding,
   return Contain([&] {
     // The clip may have been read to a later segment, whose mesh is another.
     SAC_RETURN_IF_ERROR(clip.Rewind());
+    if (encoding.part && encoding.targets.any()) return Status::InvalidArgument("a part of a clip has no targets");
     // The shape is fitted and measured beside the encoder, which would check the mesh too late for them.
     SAC_RETURN_IF_ERROR(Named(clip.name(), CheckMesh(clip.mesh(), encoding.encoder.limits)));
     return ClipEncoder(clip, encoding).Run(sink, result);
