@@ -26,6 +26,8 @@ Command AddSynthCommand(CLI::App& app);
 Command AddPlayCommand(CLI::App& app);
 Command AddSweepCommand(CLI::App& app);
 Command AddThinCommand(CLI::App& app);
+Command AddCutCommand(CLI::App& app);
+Command AddJoinCommand(CLI::App& app);
 Command AddReferenceCommand(CLI::App& app);
 
 }  // namespace sac
