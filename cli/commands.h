@@ -27,6 +27,8 @@ Command AddPlayCommand(CLI::App& app);
 Command AddSweepCommand(CLI::App& app);
 Command AddViewCommand(CLI::App& app);
 Command AddThinCommand(CLI::App& app);
+Command AddCutCommand(CLI::App& app);
+Command AddJoinCommand(CLI::App& app);
 Command AddReferenceCommand(CLI::App& app);
 
 }  // namespace sac

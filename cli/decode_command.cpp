@@ -1,19 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
-#include <charconv>
 #include <cstdint>
 #include <cstdio>
 #include <filesystem>
-#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
-#include <string_view>
 #include <utility>
 #include <vector>
 
 #include "cli/commands.h"
 #include "cli/decoded_frames.h"
+#include "cli/frame_range_option.h"
 #include "cli/number_option.h"
 #include "cli/progress.h"
 #include "cli/warning_report.h"
@@ -32,11 +30,6 @@ namespace {
 
 constexpr double kFpsOfUnknown = 24;
 
-struct WantedFrames {
-  std::uint32_t begin = 0;
-  std::optional<std::uint32_t> end;  // all to the last if not given
-};
-
 struct DecodeOptions {
   std::string input, output, order_map, onto;
   WantedFrames frames;
@@ -45,27 +38,6 @@ struct DecodeOptions {
   ClipOutput::Compression compression = ClipOutput::Compression::kNone;
   bool exr = false, skip_damage = false, force = false, strict = false;
 };
-
-bool ParseFrameNumber(std::string_view text, std::uint32_t& number) {
-  const auto result = std::from_chars(text.data(), text.data() + text.size(), number);
-  return result.ec == std::errc() && result.ptr == text.data() + text.size();
-}
-
-// `A:B`, `A:`, `:B` or `A`.
-bool ParseFrameRange(std::string_view text, WantedFrames& range) {
-  range = {};
-  const std::size_t colon = text.find(':');
-  if (colon == std::string_view::npos) {
-    if (!ParseFrameNumber(text, range.begin) || range.begin == std::numeric_limits<std::uint32_t>::max()) return false;
-    range.end = range.begin + 1;
-    return true;
-  }
-  const std::string_view begin = text.substr(0, colon), end = text.substr(colon + 1);
-  if (begin.empty() && end.empty()) return false;
-  if (!begin.empty() && !ParseFrameNumber(begin, range.begin)) return false;
-  if (end.empty()) return true;
-  return ParseFrameNumber(end, range.end.emplace()) && range.begin < *range.end;
-}
 
 Status CheckOptions(const DecodeOptions& options) {
   if (!ClipOutput::IsClipName(options.output)) {
@@ -326,15 +298,8 @@ Command AddDecodeCommand(CLI::App& app) {
                    "target for each frame; or clip.usda; or clip.vat, with textures for vertex shaders beside it")
       ->required()
       ->option_text("OUT");
-  command
-      ->add_option(
-          "--frames",
-          [options](const CLI::results_t& words) {
-            if (ParseFrameRange(words.front(), options->frames)) return true;
-            throw CLI::ValidationError("--frames", "'" + words.front() + "' is no range of frames such as 10:20");
-          },
-          "frames A up to but without B, from 0; A: to the end, :B from the first, A one frame [all]")
-      ->option_text("A:B");
+  AddFrameRange(*command, "--frames", options->frames,
+                "frames A up to but without B, from 0; A: to the end, :B from the first, A one frame [all]");
   AddOnto(*command, *options);
   command->add_flag("--skip-damage", options->skip_damage,
                     "go on after damage with the next group that is sound, and tell which frames are lost");

@@ -19,11 +19,11 @@ std::vector<sac::Command> AddCommands(CLI::App& app) {
       "  sac encode body.obj walk.pc2 -o walk.sac\n"
       "  sac info walk.sac\n"
       "  sac decode walk.sac -o frame_%04d.obj\n");
-  return {sac::AddEncodeCommand(app),   sac::AddDecodeCommand(app),  sac::AddInfoCommand(app),
-          sac::AddVerifyCommand(app),   sac::AddCompareCommand(app), sac::AddComponentsCommand(app),
-          sac::AddPoseCommand(app),     sac::AddSynthCommand(app),   sac::AddSweepCommand(app),
-          sac::AddThinCommand(app),     sac::AddPlayCommand(app),    sac::AddViewCommand(app),
-          sac::AddReferenceCommand(app)};
+  return {sac::AddEncodeCommand(app), sac::AddDecodeCommand(app),  sac::AddInfoCommand(app),
+          sac::AddVerifyCommand(app), sac::AddCompareCommand(app), sac::AddComponentsCommand(app),
+          sac::AddPoseCommand(app),   sac::AddSynthCommand(app),   sac::AddSweepCommand(app),
+          sac::AddThinCommand(app),   sac::AddCutCommand(app),     sac::AddJoinCommand(app),
+          sac::AddPlayCommand(app),   sac::AddViewCommand(app),    sac::AddReferenceCommand(app)};
 }
 
 }  // namespace

@@ -6,7 +6,11 @@
 #include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <numbers>
+#include <utility>
+#include <vector>
 
 namespace sac {
 namespace {
@@ -48,14 +52,7 @@ Eigen::Matrix3d PolarRotation(const Eigen::Matrix3d& j) {
 
 Eigen::Vector3d UnwrappedLog(const Eigen::Matrix3d& r, const Eigen::Vector3d& previous) {
   const Eigen::AngleAxisd rotation(r);
-  const double turn = 2 * std::numbers::pi;
-  if (rotation.angle() < 1e-9) {  // no axis of its own: whole turns about the previous one
-    const double turns = std::round(previous.norm() / turn);
-    return turns == 0 ? Eigen::Vector3d(rotation.angle() * rotation.axis())
-                      : Eigen::Vector3d(previous.normalized() * turns * turn);
-  }
-  const double nearest = std::round((previous.dot(rotation.axis()) - rotation.angle()) / turn);
-  return rotation.axis() * (rotation.angle() + nearest * turn);
+  return NearestTurn(rotation.axis(), rotation.angle(), previous);
 }
 
 TriangleFields::TriangleFields(std::span<const Triangle> triangles)
@@ -81,7 +78,24 @@ const Eigen::MatrixXd& TriangleFields::Measure(const PositionMatrix& reference, 
     fields_.row(row) << u[0], u[1], u[2], p(0, 0) - 1, p(1, 1) - 1, p(2, 2) - 1, (p(0, 1) + p(1, 0)) / 2,
         (p(0, 2) + p(2, 0)) / 2, (p(1, 2) + p(2, 1)) / 2;
   }
+  if (std::exchange(restarted_, false)) UnwrapOverSurface();
   return fields_;
+}
+
+void TriangleFields::Restart() {
+  restarted_ = true;
+  fields_.setZero();
+}
+
+void TriangleFields::UnwrapOverSurface() {
+  // Below this angle no two neighbours of a surface lie on different branches, but for triangles that are turned
+  // against each other by a quarter or more, of which nothing can be said.
+  constexpr double kSafe = 0.75 * std::numbers::pi;
+  if (fields_.rows() == 0 || fields_.leftCols<3>().rowwise().norm().maxCoeff() < kSafe) return;
+  if (!surface_) surface_ = std::make_unique<SurfaceUnwrapping>(triangles_);
+  std::vector<std::uint8_t> left_out(triangles_.size());
+  for (std::size_t j = 0; j < left_out.size(); ++j) left_out[j] = areas_[static_cast<Eigen::Index>(j)] == 0 ? 1 : 0;
+  surface_->Unwrap(left_out, fields_.leftCols<3>());
 }
 
 }  // namespace sac

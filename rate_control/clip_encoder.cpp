@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <utility>
@@ -57,6 +58,11 @@ class ClipEncoder {
  public:
   ClipEncoder(ClipReader& clip, const ClipEncoding& encoding)
       : clip_(clip), encoding_(encoding), rounds_(RoundsOf(encoding)), settings_(encoding.encoder) {
+    if (encoding.part && (encoding.part->first_frame > 0 || settings_.metadata.first_frame)) {
+      const std::int64_t number = std::int64_t{encoding.part->first_frame} + settings_.metadata.first_frame.value_or(0);
+      constexpr std::int64_t kMost = std::numeric_limits<std::int32_t>::max();
+      settings_.metadata.first_frame = static_cast<std::int32_t>(std::min(number, kMost));
+    }
     if (settings_.frame_rate_numerator == 0 && clip.rate().numerator != 0) {
       settings_.frame_rate_numerator = clip.rate().numerator;
       settings_.frame_rate_denominator = clip.rate().denominator;
@@ -92,19 +98,10 @@ class ClipEncoder {
 };
 
 Status ClipEncoder::FindJoined() {
-  if (!settings_.join.value_or(true)) return Status::Ok();
+  if (encoding_.part || !settings_.join.value_or(true)) return Status::Ok();
   for (bool end = false; !end;) {
-    CoincidentVertices coincident;
-    const Positions& first = clip_.mesh().positions;
-    if (CheckFinite(first).ok()) coincident.Add(first);
-    if (coincident.any() && joined_.empty()) SAC_RETURN_IF_ERROR(clip_.Rewind());
-    Positions frame;
-    // What is wrong with a frame is said when it is to be coded, with the frames before it.
-    for (bool last = false; coincident.any() && clip_.Next(frame, last).ok() && !last;) {
-      if (frame.size() != first.size() || !CheckFinite(frame).ok()) break;
-      coincident.Add(frame);
-    }
-    joined_.push_back(coincident.Lowest());
+    SegmentReader segment(clip_, static_cast<std::uint32_t>(joined_.size()));
+    SAC_RETURN_IF_ERROR(FindJoinedVertices(segment, joined_.emplace_back()));
     SAC_RETURN_IF_ERROR(clip_.NextSegment(end));
   }
   return joined_.size() > 1 ? clip_.Rewind() : Status::Ok();
@@ -163,8 +160,10 @@ Status ClipEncoder::Search() {
 
 Status ClipEncoder::Encode(const ByteSink& sink, EncodedClip& result) {
   settings_.progress = ProgressOf(encoding_, 0);
-  return EncodeAndMeasure(clip_, settings_, {shapes_, joined_, encoding_.measure || trials_ > 0, sink, nullptr},
-                          result);
+  return EncodeAndMeasure(
+      clip_, settings_,
+      {shapes_, joined_, encoding_.measure || trials_ > 0, sink, nullptr, encoding_.part ? &*encoding_.part : nullptr},
+      result);
 }
 
 Status ClipEncoder::EncodeFromChosenShapes(const ByteSink& sink, EncodedClip& result) {
@@ -197,9 +196,25 @@ Status ClipEncoder::Run(const ByteSink& sink, EncodedClip& result) {
 
 }  // namespace
 
+Status FindJoinedVertices(ClipReader& clip, std::vector<std::uint32_t>& lowest) {
+  CoincidentVertices coincident;
+  const Positions& first = clip.mesh().positions;
+  if (CheckFinite(first).ok()) coincident.Add(first);
+  if (coincident.any()) SAC_RETURN_IF_ERROR(clip.Rewind());
+  Positions frame;
+  // What is wrong with a frame is said when it is to be coded, with the frames before it.
+  for (bool end = false; coincident.any() && clip.Next(frame, end).ok() && !end;) {
+    if (frame.size() != first.size() || !CheckFinite(frame).ok()) break;
+    coincident.Add(frame);
+  }
+  lowest = coincident.Lowest();
+  return Status::Ok();
+}
+
 Status EncodeClip(ClipReader& clip, const ClipEncoding& encoding,
                   const std::function<Status(std::span<const std::uint8_t> bytes)>& sink, EncodedClip& result) {
   return Contain([&] {
+    if (encoding.part && encoding.targets.any()) return Status::InvalidArgument("a part of a clip has no targets");
     // The shape is fitted and measured beside the encoder, which would check the mesh too late for them.
     SAC_RETURN_IF_ERROR(Named(clip.name(), CheckMesh(clip.mesh(), encoding.encoder.limits)));
     return ClipEncoder(clip, encoding).Run(sink, result);

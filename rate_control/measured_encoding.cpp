@@ -1,123 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "rate_control/measured_encoding.h"
 
-#include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "metrics/error_meter.h"
-#include "sac/decoder.h"
+#include "codec/encode/group_window.h"
+#include "rate_control/stream_measurement.h"
 
 namespace sac {
 namespace {
 
-// Decodes the bytes of an encoder and measures the decoded frames against the encoder's input.
-class Measurement {
- public:
-  // `residual` may be null; otherwise it must outlive the object, and the clip has one mesh.
-  explicit Measurement(ShapeResidual* residual) : residual_(residual) {}
-
-  // The frames that are expected next have this mesh, whose vertices the encoder puts into `order`.
-  void BeginSegment(const Mesh& mesh, const std::vector<std::uint32_t>& order);
-  void Expect(Positions frame) { expected_.push_back({std::move(frame), segments_.size() - 1}); }
-  Status Take(std::span<const std::uint8_t> bytes);
-  Status Finish(EncodedClip& result);
-
- private:
-  struct Segment {
-    std::vector<Triangle> triangles;
-    std::vector<std::uint32_t> order;
-    bool has_uvs, has_normals;
-  };
-  struct Expected {
-    Positions positions;
-    std::size_t segment;
-  };
-
-  // `decoded` in the order of the input of the current segment.
-  Positions InInputOrder(const Positions& decoded) const;
-  void BeginMeasuring(std::size_t segment);
-  void Compare(const Positions& original, const Positions& decoded);
-
-  Decoder decoder_;
-  std::vector<Segment> segments_;
-  std::optional<ErrorMeter> meter_;
-  std::size_t measured_ = 0;  // the segment that meter_ is at
-  ShapeResidual* residual_;
-  std::deque<Expected> expected_;  // frames that were sent to the encoder and have not been decoded yet
-  DecodedFrame frame_;
-  bool lost_uvs_ = false, lost_normals_ = false;
-};
-
-void Measurement::BeginSegment(const Mesh& mesh, const std::vector<std::uint32_t>& order) {
-  segments_.push_back({mesh.triangles, order, !mesh.uv_triangles.empty(), !mesh.normals.empty()});
-}
-
-Positions Measurement::InInputOrder(const Positions& decoded) const {
-  const std::vector<std::uint32_t>& order = segments_[measured_].order;
-  Positions ordered(decoded.size());
-  for (std::size_t v = 0; v < order.size(); ++v) ordered[order[v]] = decoded[v];
-  return ordered;
-}
-
-void Measurement::BeginMeasuring(std::size_t index) {
-  measured_ = index;
-  Segment& segment = segments_[index];
-  const std::size_t vertices = segment.order.size();
-  if (meter_) {
-    meter_->BeginMesh(std::move(segment.triangles), vertices);
-  } else {
-    meter_.emplace(std::move(segment.triangles), vertices);
-  }
-  const Mesh& decoded = *decoder_.mesh();
-  lost_uvs_ = lost_uvs_ || (segment.has_uvs && decoded.uv_triangles.empty());
-  lost_normals_ = lost_normals_ || (segment.has_normals && decoded.normals.empty());
-  if (residual_ != nullptr) residual_->Begin(InInputOrder(decoded.positions));
-}
-
-void Measurement::Compare(const Positions& original, const Positions& decoded) {
-  meter_->Add(original, decoded);
-  if (residual_ != nullptr) residual_->Add(original, decoded);
-}
-
-Status Measurement::Take(std::span<const std::uint8_t> bytes) {
-  while (!bytes.empty()) {
-    SAC_RETURN_IF_ERROR(decoder_.Send(bytes));
-    Status status;
-    while ((status = decoder_.Receive(frame_)).ok()) {
-      if (expected_.empty()) return Status::Corrupt("a frame too many");
-      const Expected& expected = expected_.front();
-      if (expected.segment != frame_.segment) return Status::Corrupt("a frame of another segment");
-      if (!meter_ || expected.segment != measured_) BeginMeasuring(expected.segment);
-      Compare(expected.positions, InInputOrder(frame_.positions));
-      expected_.pop_front();
-    }
-    if (status.code() != StatusCode::kNeedMoreData) return status;
-  }
-  return Status::Ok();
-}
-
-Status Measurement::Finish(EncodedClip& result) {
-  SAC_RETURN_IF_ERROR(decoder_.Finish());
-  if (!expected_.empty()) return Status::Corrupt("a frame is missing");
-  if (meter_) result.distortion = meter_->Result();
-  result.lost_texture_coordinates = lost_uvs_;
-  result.lost_normals = lost_normals_;
-  return Status::Ok();
-}
-
 // An encoding as it goes.
 class Encoding {
  public:
-  Encoding(ClipReader& clip, const EncodingTask& task, EncodedClip& result)
-      : clip_(clip), task_(task), result_(result), measure_(task.measure), measurement_(task.residual) {}
+  Encoding(ClipReader& clip, const EncoderSettings& settings, const EncodingTask& task, EncodedClip& result)
+      : clip_(clip),
+        settings_(settings),
+        task_(task),
+        result_(result),
+        measure_(task.measure),
+        // An engine's job system stands for all threads: none of our own beside it.
+        measurement_(task.residual, ThreadsOf(settings) > 1 && !settings.run_jobs) {}
 
-  Status Run(const EncoderSettings& settings);
+  Status Run();
 
  private:
   // The mesh of the I-frame of the segment that the clip is at.
@@ -129,6 +37,7 @@ class Encoding {
   std::span<const std::uint32_t> Joined() const {
     return result_.segments < task_.joined.size() ? task_.joined[result_.segments] : std::span<const std::uint32_t>();
   }
+  Status Create();
   // Gives out and measures what has been coded.
   Status Take();
   // Ends the stream after the last frame that could be coded.
@@ -137,19 +46,20 @@ class Encoding {
   Status BeginNextSegment(bool& end);
 
   ClipReader& clip_;
+  const EncoderSettings& settings_;
   const EncodingTask& task_;
   EncodedClip& result_;
   bool measure_;
-  Measurement measurement_;
+  StreamMeasurement measurement_;
   std::unique_ptr<Encoder> encoder_;
 };
 
 Status Encoding::Take() {
-  const std::vector<std::uint8_t> bytes = encoder_->TakeBytes();
+  std::vector<std::uint8_t> bytes = encoder_->TakeBytes();
   result_.bytes += bytes.size();
   if (task_.sink && !bytes.empty()) SAC_RETURN_IF_ERROR(task_.sink(bytes));
   if (!measure_) return Status::Ok();
-  return Named(clip_.name(), Named("decoding what was encoded", measurement_.Take(bytes)));
+  return Named(clip_.name(), Named("decoding what was encoded", measurement_.Take(std::move(bytes))));
 }
 
 Status Encoding::Fail(const Status& status) {
@@ -160,7 +70,9 @@ Status Encoding::Fail(const Status& status) {
     result_.frames = encoder_->frames();
     result_.order = encoder_->order();
   }
-  return Named(clip_.name_of(encoder_->fault()->frame), status);
+  std::string where = clip_.name_of(encoder_->fault()->frame);
+  if (task_.part != nullptr) where += ": in the part from frame " + std::to_string(task_.part->first_frame) + " on";
+  return Named(where, status);
 }
 
 Status Encoding::EncodeSegment() {
@@ -168,7 +80,10 @@ Status Encoding::EncodeSegment() {
   measurement_.BeginSegment(clip_.mesh(), encoder_->order());
   Positions frame;
   for (bool end = false;;) {
-    SAC_RETURN_IF_ERROR(clip_.Next(frame, end));
+    if (const Status read = clip_.Next(frame, end); !read.ok()) {
+      const Status before = encoder_->Flush();  // a frame before may be at fault
+      return before.ok() ? read : Fail(before);
+    }
     if (end) return Status::Ok();
     result_.positions += frame.size();
     if (const Status sent = encoder_->Send(frame); !sent.ok()) return Fail(sent);
@@ -185,13 +100,32 @@ Status Encoding::BeginNextSegment(bool& end) {
   return encoder_->fault() ? Fail(begun) : Named(clip_.name_of(clip_.first_frame()), begun);
 }
 
-Status Encoding::Run(const EncoderSettings& settings) {
+Status Encoding::Create() {
+  if (task_.part == nullptr) {
+    EncoderSettings own = settings_;
+    own.join = false;  // but for those of the task
+    return Encoder::Create(Shape(), own, encoder_, Joined());
+  }
+  const std::uint32_t first = task_.part->first_frame;
+  SAC_RETURN_IF_ERROR(Encoder::CreateFrom(task_.part->start, settings_, encoder_));
+  if (clip_.mesh().positions.size() != encoder_->info().vertices ||
+      clip_.mesh().triangles.size() != encoder_->info().triangles) {
+    return Status::InvalidArgument("another mesh than that of the start");
+  }
+  if (const std::uint32_t group = encoder_->group_frames(); first % group != 0) {
+    return Status::InvalidArgument("a part begins with a group, of which each has " + std::to_string(group) +
+                                   " frames: not with frame " + std::to_string(first) + " but with " +
+                                   std::to_string(first / group * group) + " or " +
+                                   std::to_string((first / group + 1) * group));
+  }
+  return Status::Ok();
+}
+
+Status Encoding::Run() {
   const std::string name = clip_.name();
   result_ = {};
   SAC_RETURN_IF_ERROR(clip_.Rewind());
-  EncoderSettings own = settings;
-  own.join = false;  // but for those of the task
-  SAC_RETURN_IF_ERROR(Named(name, Encoder::Create(Shape(), own, encoder_, Joined())));
+  SAC_RETURN_IF_ERROR(Named(name, Create()));
   for (bool end = false; !end;) {
     SAC_RETURN_IF_ERROR(EncodeSegment());
     SAC_RETURN_IF_ERROR(BeginNextSegment(end));
@@ -200,7 +134,8 @@ Status Encoding::Run(const EncoderSettings& settings) {
   result_.frames = encoder_->frames();
   SAC_RETURN_IF_ERROR(Take());
   if (measure_) SAC_RETURN_IF_ERROR(Named(name, Named("decoding what was encoded", measurement_.Finish(result_))));
-  result_.settings = settings;
+  result_.settings = settings_;
+  result_.group_frames = encoder_->group_frames();
   result_.info = encoder_->info();
   result_.parts = encoder_->stream_bytes();
   result_.order = encoder_->order();
@@ -216,7 +151,7 @@ Status Named(const std::string& name, const Status& status) {
 
 Status EncodeAndMeasure(ClipReader& clip, const EncoderSettings& settings, const EncodingTask& task,
                         EncodedClip& result) {
-  return Encoding(clip, task, result).Run(settings);
+  return Encoding(clip, settings, task, result).Run();
 }
 
 }  // namespace sac

@@ -34,6 +34,7 @@ struct EncodingTask {
   ByteSink sink;        // gets the bytes; it may be empty
   // With `measure`: gets the decoded shape and all frames of a clip that has one segment; null: nobody does.
   ShapeResidual* residual = nullptr;
+  const ClipPart* part = nullptr;  // null: the clip begins with its first frame and has a start of its own
 };
 
 // Encodes a clip from its first frame on, each of its meshes as a segment. All members of `result` but the numbers of

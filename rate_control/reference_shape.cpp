@@ -72,7 +72,8 @@ Status EncodeFrom(ClipReader& clip, const std::vector<std::uint32_t>& joined, co
 
 std::uint32_t RoundsOf(const ClipEncoding& encoding) {
   const EncoderSettings& encoder = encoding.encoder;
-  if (encoder.max_error || encoder.low_delay || encoder.reference_shape != ReferenceShape::kKey) return 0;
+  if (encoding.part || encoder.max_error || encoder.low_delay || encoder.reference_shape != ReferenceShape::kKey)
+    return 0;
   return encoding.reference_rounds.value_or(encoding.measure || encoding.targets.any() ? kReferenceRounds : 0);
 }
 

@@ -3,9 +3,9 @@
 #include <cstddef>
 #include <cstring>
 #include <exception>
-#include <functional>
 #include <string>
 
+#include "codec/decode/c_job_runner.h"
 #include "geometry/c_status.h"
 #include "sac/decoder.h"
 #include "sac/sac.h"
@@ -82,19 +82,6 @@ void Describe(const sac::FrameInfo& from, sac_frame_info* to) {
 // The size of sac_settings in the first version of the interface, the least that a caller may give.
 constexpr std::size_t kFirstSettings = offsetof(sac_settings, max_frame_work) + sizeof(sac_settings::max_frame_work);
 
-// A JobRunner that calls the caller's C function.
-struct CJobRunner {
-  sac_run_jobs run;
-  void* user;
-
-  void operator()(std::size_t jobs, const std::function<void(std::size_t)>& job) const {
-    const auto call = [](void* context, std::size_t i) {
-      (*static_cast<const std::function<void(std::size_t)>*>(context))(i);
-    };
-    run(user, jobs, call, const_cast<std::function<void(std::size_t)>*>(&job));
-  }
-};
-
 // The values of an array of arrays as one array for C; null when there are none.
 template <class Out, class In>
 const Out* Flat(const std::vector<In>& values) {
@@ -142,7 +129,7 @@ sac_status sac_decoder_open(sac_decoder** decoder, const sac_settings* settings)
   to.threads = s.threads;
   to.layers = s.layers;
   try {
-    if (s.run_jobs != nullptr) to.run_jobs = CJobRunner{s.run_jobs, s.run_jobs_user};
+    if (s.run_jobs != nullptr) to.run_jobs = sac::CJobRunner{s.run_jobs, s.run_jobs_user};
     *decoder = new sac_decoder{sac::Decoder(to), {}, {}};
     return SAC_OK;
   } catch (const std::exception&) {

@@ -82,6 +82,7 @@ void sac_encoder_settings_init(sac_encoder_settings* settings) {
   settings->max_memory = defaults.limits.memory;
   settings->reference_rounds = -1;
   settings->up_axis = settings->loops = settings->join = -1;
+  settings->threads = defaults.threads;
 }
 
 sac_status sac_encoder_open(sac_encoder** encoder, const sac_input_mesh* mesh, const sac_encoder_settings* settings) {

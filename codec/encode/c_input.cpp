@@ -9,6 +9,8 @@
 #include <iterator>
 #include <optional>
 
+#include "codec/decode/c_job_runner.h"
+
 namespace sac {
 namespace {
 
@@ -65,6 +67,8 @@ EncoderSettings ToEncoderSettings(const sac_encoder_settings& s) {
   to.limits.memory = s.max_memory;
   to.base_levels = s.base_levels;
   to.bounds = s.bounds != 0;
+  to.threads = s.threads;
+  if (s.run_jobs != nullptr) to.run_jobs = CJobRunner{s.run_jobs, s.run_jobs_user};
   if (s.name != nullptr) to.metadata.name = s.name;
   if (s.json != nullptr) to.metadata.json = s.json;
   if (s.metres_per_unit != 0) to.metadata.metres_per_unit = s.metres_per_unit;

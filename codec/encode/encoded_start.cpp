@@ -154,6 +154,7 @@ Status EncodeStart(const JoinedMesh& input, const EncoderSettings& settings, dou
   start.header = HeaderOf(first, settings, rms, defaults);
   start.header.copies = static_cast<std::uint32_t>(input.authors() - first.positions.size());
   start.max_error = settings.max_error.value_or(0);
+  start.groups = {settings.group, settings.pyramid, settings.base_levels};
 
   PositionTargets targets;
   SAC_RETURN_IF_ERROR(ChooseGrid(first, settings.position_bits.value_or(defaults.position_bits), !settings.max_error,
@@ -191,15 +192,23 @@ Status NextPacket(PacketReader& reader, PacketType type, std::span<const std::ui
 
 // Reads the part of a start that follows the I-frame: bound, order and CRC-32.
 Status ReadEncoderPart(std::span<const std::uint8_t> bytes, EncodedStart& start) {
-  constexpr std::size_t kBound = 8, kIndex = 4, kCrc = 4;
+  constexpr std::size_t kBound = 8, kIndex = 4, kGroups = 12, kCrc = 4;
   const auto vertices = static_cast<std::size_t>(start.header.given_out());
-  if (bytes.size() != kBound + kIndex * vertices + kCrc) return Status::Corrupt("stream start: length");
+  if (bytes.size() != kBound + kIndex * vertices + kGroups + kCrc) return Status::Corrupt("stream start: length");
   ByteReader reader(bytes);
   start.max_error = reader.F64();
   start.order.resize(vertices);
   for (std::uint32_t& i : start.order) i = reader.U32();
+  for (std::uint32_t* setting : {&start.groups.group, &start.groups.pyramid, &start.groups.base_levels}) {
+    *setting = reader.U32();
+  }
   if (reader.U32() != Crc32(bytes.first(bytes.size() - kCrc))) return Status::Corrupt("stream start: wrong CRC-32");
   if (!IsPermutation(start.order)) return Status::Corrupt("stream start: the vertex order is no permutation");
+  const GroupStructureSettings& groups = start.groups;
+  if (groups.group == 0 || groups.group > Limits{}.expert.frames_per_group || groups.pyramid == 0 ||
+      (groups.base_levels > 0 && start.header.references_previous())) {
+    return Status::Corrupt("stream start: settings of groups out of range");
+  }
   const bool is_bounded = start.header.correction_step > 0;
   if (!std::isfinite(start.max_error) || (is_bounded ? start.max_error <= 0 : start.max_error != 0)) {
     return Status::Corrupt("stream start: a bound on the error that is not the header's");
@@ -239,8 +248,15 @@ std::vector<std::uint8_t> WriteStreamStart(const EncodedStart& start) {
   const std::size_t begin = out.size();
   out.F64(start.max_error);
   for (const std::uint32_t i : start.order) out.U32(i);
+  for (const std::uint32_t i : {start.groups.group, start.groups.pyramid, start.groups.base_levels}) out.U32(i);
   out.U32(Crc32(std::span(out.bytes()).subspan(begin)));
   return std::move(out.bytes());
+}
+
+std::uint32_t FullGroup(const EncodedStart& start, const Limits& limits) {
+  const std::uint64_t most =
+      MaxGroupValues(limits, start.shape) / std::max<std::uint64_t>(1, FrameValues(start.shape.layouts));
+  return static_cast<std::uint32_t>(std::clamp<std::uint64_t>(most, 1, start.groups.group));
 }
 
 Status ReadStreamStart(std::span<const std::uint8_t> bytes, const Limits& limits, EncodedStart& start) {

@@ -14,6 +14,15 @@
 
 namespace sac {
 
+// The settings that closed groups are made by, as in EncoderSettings.
+struct GroupStructureSettings {
+  std::uint32_t group = 128;
+  std::uint32_t pyramid = 16;
+  std::uint32_t base_levels = 0;
+
+  bool operator==(const GroupStructureSettings&) const = default;
+};
+
 // The start of a stream as an encoder holds it: header and I-frame, with everything that groups of frames are coded
 // from. It is a value that can be written and read, so that several machines can encode groups of the same stream.
 struct EncodedStart {
@@ -21,6 +30,7 @@ struct EncodedStart {
   std::vector<std::uint8_t> i_frame;  // payload of the I-frame packet
   std::vector<std::uint32_t> order;   // for each vertex that decoders give out its index in the input
   double max_error = 0;               // bound on the error of any vertex, model units; 0: no bound
+  GroupStructureSettings groups;
   Shape shape;
 };
 
@@ -35,8 +45,8 @@ Status EncodeStart(const Mesh& mesh, const EncoderSettings& settings, EncodedSta
                    std::span<const std::uint32_t> lowest = {});
 
 // Returns `start` as bytes: first the bytes that the stream begins with (magic, header packet, I-frame packet), then
-// the members that decoders do not need: the error bound as a little-endian f64, the order as one u32 per index, and
-// the CRC-32 of bound and order.
+// the members that decoders do not need: the error bound as a little-endian f64, the order as one u32 per index, the
+// settings of groups as one u32 each, and the CRC-32 of these.
 std::vector<std::uint8_t> WriteStreamStart(const EncodedStart& start);
 
 // Reads what WriteStreamStart() wrote and derives the shape as a decoder does. On a machine with the same
@@ -47,5 +57,8 @@ std::vector<std::uint8_t> WriteStreamStart(const EncodedStart& start);
 // kUnsupported when the stream has another version or the harmonics computed here are not those of the I-frame. May
 // throw std::bad_alloc.
 Status ReadStreamStart(std::span<const std::uint8_t> bytes, const Limits& limits, EncodedStart& start);
+
+// How many frames a full closed group has: what the settings say, or as many as decoders with `limits` would take.
+std::uint32_t FullGroup(const EncodedStart& start, const Limits& limits);
 
 }  // namespace sac

@@ -6,6 +6,7 @@
 
 #include "codec/encode/contain.h"
 #include "codec/encode/encoded_start.h"
+#include "codec/encode/input_check.h"
 #include "codec/encode/stream_encoder.h"
 
 namespace sac {
@@ -39,6 +40,23 @@ Status Encoder::Create(const Mesh& mesh, const EncoderSettings& settings, std::u
   return Contain(create);
 }
 
+Status Encoder::CreateFrom(std::span<const std::uint8_t> bytes, const EncoderSettings& settings,
+                           std::unique_ptr<Encoder>& encoder) {
+  const auto create = [&] {
+    SAC_RETURN_IF_ERROR(CheckSettings(settings));
+    if (settings.low_delay)
+      return Status::InvalidArgument("frames that come one by one are coded from their own start");
+    EncodedStart start;
+    SAC_RETURN_IF_ERROR(ReadStreamStart(bytes, settings.limits, start));
+    encoder.reset(new Encoder(std::make_unique<Impl>(std::move(start), settings)));
+    return Status::Ok();
+  };
+  return Contain(create);
+}
+
+std::vector<std::uint8_t> Encoder::start() const { return WriteStreamStart(impl_->stream.start()); }
+std::uint32_t Encoder::group_frames() const { return impl_->stream.full_group(); }
+
 Status Encoder::Send(std::span<const Vec3f> positions) {
   return impl_->Do([&](StreamEncoder& stream) { return stream.Send(positions); });
 }
@@ -50,6 +68,10 @@ Status Encoder::BeginSegment(const Mesh& mesh, std::span<const std::uint32_t> lo
     return impl_->Do([&](StreamEncoder& stream) { return stream.BeginSegment(std::move(start)); });
   };
   return Contain(begin);
+}
+
+Status Encoder::Flush() {
+  return impl_->Do([](StreamEncoder& stream) { return stream.Flush(); });
 }
 
 Status Encoder::Finish() {

@@ -31,11 +31,6 @@ double EstimatedBits(const PlaneValues& residual) {
   return bits;
 }
 
-Eigen::VectorXd ReferenceAreas(TriangleFields& fields, const PositionMatrix& positions) {
-  fields.Measure(positions, positions);
-  return fields.areas();
-}
-
 // Whether a residual is as large as the format allows: then it says less than it should.
 bool IsSaturated(const PlaneValues& values) {
   return std::any_of(values.begin(), values.end(), [](std::int32_t v) { return std::abs(v) >= kMaxResidual; });
@@ -58,15 +53,21 @@ void CorrectOverBound(const PositionMatrix& remainder, const PositionMatrix& exa
 
 Status MotionTooFar() { return Status::InvalidArgument("the motion is too far from the first frame for these steps"); }
 
-FrameEncoder::FrameEncoder(const Shape& shape, const SequenceHeader& header, double max_error)
+FrameEncoder::FrameEncoder(const Shape& shape, const SequenceHeader& header, double max_error,
+                           const Projection& projection)
     : shape_(shape),
       header_(header),
       max_error_(max_error),
       fields_(shape.triangles),
-      projection_(shape, ReferenceAreas(fields_, shape.positions)),
+      projection_(projection),
       units_{PlaneUnits(shape, header, kMotion), PlaneUnits(shape, header, kDisplacement),
              PlaneUnits(shape, header, kDetail)},
       reconstructor_(shape, header) {}
+
+void FrameEncoder::StartGroup() {
+  reconstructor_.StartGroup();
+  fields_.Restart();
+}
 
 Status FrameEncoder::StartFrame(bool intra) { return reconstructor_.StartFrame(intra) ? Status::Ok() : MotionTooFar(); }
 
@@ -74,6 +75,7 @@ void FrameEncoder::Show(const FrameCoefficients& frame) { reconstructor_.Reconst
 
 Eigen::MatrixXd FrameEncoder::MeasureMotion(const PositionMatrix& positions, const RigidMotion& rigid) {
   const PositionMatrix aligned = reconstructor_.RemoveRigid(positions, rigid);
+  if (!UsesKeyReference()) fields_.Restart();  // the frame before is the reference: what it did is no part of it
   return projection_.ProjectTriangles(fields_.Measure(reconstructor_.reference(), aligned));
 }
 

@@ -33,19 +33,20 @@ struct FrameDraft {
 // after the planes before it.
 class FrameEncoder {
  public:
-  // `shape` must outlive it. `max_error`: how far any vertex may be from where it should be once positions are floats,
-  // model units; it has no meaning without a correction plane.
-  FrameEncoder(const Shape& shape, const SequenceHeader& header, double max_error);
+  // `shape` and `projection`, which is ProjectionOf() it, must outlive it. `max_error`: how far any vertex may be from
+  // where it should be once positions are floats, model units; it has no meaning without a correction plane.
+  FrameEncoder(const Shape& shape, const SequenceHeader& header, double max_error, const Projection& projection);
 
-  // Begins a group.
-  void StartGroup() { reconstructor_.StartGroup(); }
+  // Forgets all frames before, also the last bits of their sums, so that what follows depends on nothing else.
+  void StartGroup();
   // Begins a frame, which sets the shape that its motion is measured against. kInvalidArgument when its linear system
   // cannot be factorized.
   Status StartFrame(bool intra);
   // Tells the reconstruction of a frame that was not chosen by Choose().
   void Show(const FrameCoefficients& frame);
 
-  // The motion plane's coefficients, real numbers, of a frame against the present reference shape.
+  // The motion plane's coefficients, real numbers, of a frame against the present reference shape. Where that is M'0,
+  // frames are measured by time from StartGroup() on, since their rotations go on from each other.
   Eigen::MatrixXd MeasureMotion(const PositionMatrix& positions, const RigidMotion& rigid);
 
   // Chooses references and residuals. `draft.syntax` has a slot and planes of zeros; `predictor` has the frames coded
@@ -78,7 +79,7 @@ class FrameEncoder {
   SequenceHeader header_;
   double max_error_;
   TriangleFields fields_;
-  Projection projection_;
+  const Projection& projection_;
   std::array<Eigen::VectorXd, 3> units_;  // of the planes in harmonics
   Reconstructor reconstructor_;
 };

@@ -19,6 +19,23 @@ std::int32_t Rounded(double value) {
   return static_cast<std::int32_t>(std::lround(std::clamp(value, -1.0 * kMaxCoefficient, 1.0 * kMaxCoefficient)));
 }
 
+PositionMatrix ToMatrix(const Positions& positions) {
+  PositionMatrix matrix(static_cast<Eigen::Index>(positions.size()), 3);
+  for (std::size_t v = 0; v < positions.size(); ++v) {
+    for (std::size_t a = 0; a < 3; ++a) {
+      matrix(static_cast<Eigen::Index>(v), static_cast<Eigen::Index>(a)) = static_cast<double>(positions[v][a]);
+    }
+  }
+  return matrix;
+}
+
+// The index of the first of the equal frames that `frames` end with; their number when the last one is alone.
+std::uint32_t FirstOfLast(const std::vector<Positions>& frames) {
+  std::size_t first = frames.size() - 1;
+  while (first > 0 && frames[first - 1] == frames.back()) --first;
+  return static_cast<std::uint32_t>(first + 1 == frames.size() ? frames.size() : first);
+}
+
 // The residual that makes `wanted` from zero at level 0, when there is one.
 bool ExactResidual(const PlaneValues& wanted, PlaneValues& residual) {
   for (std::size_t i = 0; i < wanted.size(); ++i) {
@@ -31,8 +48,15 @@ bool ExactResidual(const PlaneValues& wanted, PlaneValues& residual) {
 
 }  // namespace
 
-GroupEncoder::GroupEncoder(const Shape& shape, const SequenceHeader& header, double max_error)
-    : shape_(shape), header_(header), frame_encoder_(shape, header, max_error) {}
+GroupEncoder::GroupEncoder(const Shape& shape, const SequenceHeader& header, double max_error,
+                           const Projection& projection)
+    : shape_(shape), header_(header), frame_encoder_(shape, header, max_error, projection) {}
+
+GroupInProgress GroupEncoder::NewGroup() {
+  last_rotation_.setZero();
+  frame_encoder_.StartGroup();
+  return {{}, {}, {}, Predictor(header_, shape_.layouts)};
+}
 
 GroupEncoder::RigidTarget GroupEncoder::FitTarget(const PositionMatrix& positions) {
   const RigidFit fit = FitRigid(shape_.positions, positions, shape_.centre);
@@ -63,65 +87,64 @@ RigidMotion GroupEncoder::ChooseRigid(const RigidTarget& target, const FrameSlot
   return chosen;
 }
 
-Status GroupEncoder::Encode(std::vector<PositionMatrix> frames, const std::vector<FrameSlot>& structure,
+void GroupEncoder::ChooseRigidMotions(GroupInProgress& group) {
+  // By time, because rotations are unwrapped in time.
+  std::vector<RigidTarget> targets;
+  for (const Positions& frame : group.frames) targets.push_back(FitTarget(ToMatrix(frame)));
+  group.rigid.resize(group.frames.size());
+  RigidMotion of_hold;
+  if (group.hold < group.frames.size()) {
+    last_rotation_.setZero();
+    of_hold = ChooseRigid(FitTarget(ToMatrix(group.frames[group.hold])), {group.hold, 0, {}}, group);
+  }
+  for (const FrameSlot& slot : group.structure) {
+    group.rigid[slot.display] = slot.display < group.hold ? ChooseRigid(targets[slot.display], slot, group) : of_hold;
+  }
+}
+
+Status GroupEncoder::Encode(std::vector<Positions> frames, const std::vector<FrameSlot>& structure, bool goes_on,
                             const std::function<Status(std::uint32_t)>& frame_done, std::vector<FrameSyntax>& coded) {
+  failed_frame_ = failed_vertex_ = 0;
+  last_positions_.clear();
   GroupInProgress group = NewGroup();
   group.frames = std::move(frames);
   group.structure = structure;
-  // 1. By time, because rotations are unwrapped in time: rigid motions, then, against the one reference shape, motion.
-  std::vector<RigidTarget> targets;
-  for (const PositionMatrix& positions : group.frames) targets.push_back(FitTarget(positions));
-  group.rigid.resize(group.frames.size());
-  for (const FrameSlot& slot : structure) group.rigid[slot.display] = ChooseRigid(targets[slot.display], slot, group);
+  const bool key = frame_encoder_.UsesKeyReference();
+  // Where all frames stand still, they do as the key frame does.
+  if (const std::uint32_t hold = FirstOfLast(group.frames); key && goes_on && hold > 0) group.hold = hold;
+  ChooseRigidMotions(group);
+  // Motion against the one reference shape, by time as well.
   std::vector<Eigen::MatrixXd> motion(group.frames.size());
-  failed_frame_ = failed_vertex_ = 0;
-  frame_encoder_.StartGroup();
-  if (frame_encoder_.UsesKeyReference()) {
-    for (std::size_t t = 0; t < motion.size(); ++t) {
-      motion[t] = frame_encoder_.MeasureMotion(group.frames[t], group.rigid[t]);
-    }
+  for (std::size_t t = 0; key && t < std::min<std::size_t>(group.hold, motion.size()); ++t) {
+    motion[t] = frame_encoder_.MeasureMotion(ToMatrix(group.frames[t]), group.rigid[t]);
   }
-
-  // 2. In coding order.
   for (const FrameSlot& slot : structure) {
     SAC_RETURN_IF_ERROR(EncodeFrame(group, std::move(motion[slot.display]), coded.emplace_back()));
     SAC_RETURN_IF_ERROR(frame_done(group.coded()));
   }
-  KeepLast(group);
   return Status::Ok();
 }
 
-Status GroupEncoder::EncodeNext(PositionMatrix positions, std::uint32_t index, FrameSyntax& frame) {
+Status GroupEncoder::EncodeNext(Positions positions, std::uint32_t index, FrameSyntax& frame) {
   failed_frame_ = index;
   failed_vertex_ = 0;
-  if (index == 0) {
-    chain_ = NewGroup();
-    frame_encoder_.StartGroup();
-  }
+  if (index == 0) chain_ = NewGroup();
   GroupInProgress& group = *chain_;
   group.structure.push_back(ChainSlot(index));
-  group.rigid.push_back(ChooseRigid(FitTarget(positions), group.structure.back(), group));
+  const PositionMatrix matrix = ToMatrix(positions);
+  group.rigid.push_back(ChooseRigid(FitTarget(matrix), group.structure.back(), group));
   group.frames.push_back(std::move(positions));
   Eigen::MatrixXd motion;
-  if (frame_encoder_.UsesKeyReference()) {
-    motion = frame_encoder_.MeasureMotion(group.frames.back(), group.rigid.back());
-  }
+  if (frame_encoder_.UsesKeyReference()) motion = frame_encoder_.MeasureMotion(matrix, group.rigid.back());
   SAC_RETURN_IF_ERROR(EncodeFrame(group, std::move(motion), frame));
-  KeepLast(group);
-  return Status::Ok();
-}
-
-void GroupEncoder::KeepLast(const GroupInProgress& group) {
   last_positions_ = group.frames.back();
-  // From behind: in a chain it is the last one coded.
-  std::size_t i = group.structure.size() - 1;
-  while (group.structure[i].display + 1 != group.frames.size()) --i;
-  last_ = group.predictor.frames()[i];
+  last_ = group.predictor.frames().back();
+  return Status::Ok();
 }
 
 Status GroupEncoder::EncodeFrame(GroupInProgress& group, Eigen::MatrixXd motion, FrameSyntax& frame) {
   const FrameSlot& slot = group.structure[group.coded()];
-  const PositionMatrix& positions = group.frames[slot.display];
+  const PositionMatrix positions = ToMatrix(group.frames[slot.display]);
   frame = {slot, {}, EmptyPlanes(shape_.layouts)};
   const RigidMotion& rigid = group.rigid[slot.display];
   const auto fail = [&](Status status) {
@@ -130,7 +153,12 @@ Status GroupEncoder::EncodeFrame(GroupInProgress& group, Eigen::MatrixXd motion,
   if (Status status = frame_encoder_.StartFrame(slot.references.empty()); !status.ok()) return fail(std::move(status));
   const bool repeats = RepeatFrame(group, frame);
   if (!repeats) {
-    if (!frame_encoder_.UsesKeyReference()) motion = frame_encoder_.MeasureMotion(positions, rigid);
+    const bool begins_hold = slot.display >= group.hold;
+    if (begins_hold) {  // what the key frame of the next group will be
+      frame_encoder_.StartGroup();
+      frame.slot.references = {};
+    }
+    if (begins_hold || !frame_encoder_.UsesKeyReference()) motion = frame_encoder_.MeasureMotion(positions, rigid);
     FrameDraft draft{positions, rigid, std::move(motion), std::move(frame)};
     Status status = frame_encoder_.Choose(group.predictor, draft);
     if (!status.ok()) return Fail(std::move(status), slot.display, draft.failed_vertex);
@@ -148,8 +176,8 @@ Status GroupEncoder::Fail(Status status, std::uint32_t frame, std::uint32_t vert
   return status;
 }
 
-bool GroupEncoder::RepeatLastGroup(const PositionMatrix& positions, FrameSyntax& frame) const {
-  if (!frame_encoder_.UsesKeyReference() || last_positions_.rows() == 0 || positions != last_positions_) return false;
+bool GroupEncoder::RepeatLastChain(const Positions& positions, FrameSyntax& frame) const {
+  if (!frame_encoder_.UsesKeyReference() || last_positions_.empty() || positions != last_positions_) return false;
   frame.rigid = last_.rigid;
   for (std::size_t p = 0; p < kPlanes; ++p) {
     if (!ExactResidual(last_.planes[p], frame.planes[p])) return false;
@@ -158,11 +186,14 @@ bool GroupEncoder::RepeatLastGroup(const PositionMatrix& positions, FrameSyntax&
 }
 
 bool GroupEncoder::RepeatFrame(const GroupInProgress& group, FrameSyntax& frame) const {
-  const PositionMatrix& positions = group.frames[frame.slot.display];
-  if (group.coded() == 0) return RepeatLastGroup(positions, frame);
+  const Positions& positions = group.frames[frame.slot.display];
+  if (group.coded() == 0) return RepeatLastChain(positions, frame);
   if (!frame_encoder_.UsesKeyReference()) return positions == group.frames[frame.slot.display - 1];
   for (std::uint32_t i = 0; i < group.coded(); ++i) {
-    if (positions != group.frames[group.structure[i].display]) continue;
+    const std::uint32_t shown = group.structure[i].display;
+    // A hold is as a key frame: it repeats itself or the group's own key frame, nothing else.
+    if (frame.slot.display >= group.hold && shown > 0 && shown < group.hold) continue;
+    if (positions != group.frames[shown]) continue;
     const FrameCoefficients& wanted = group.predictor.frames()[i];
     if (!ExactResidual(wanted.planes[kCorrection], frame.planes[kCorrection])) return false;
     // The structure's own references will do if they predict the same.

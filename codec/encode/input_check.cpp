@@ -71,6 +71,7 @@ Status CheckSettings(const EncoderSettings& s) {
   if (s.base_levels > 0 && (s.low_delay || s.reference_shape == ReferenceShape::kPrevious)) {
     return Status::InvalidArgument("layers need B-frames measured against the mesh");
   }
+  if (s.threads > 1024) return Status::InvalidArgument("there are at most 1024 threads");
   return CheckPackets(s);
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "codec/encode/projection.h"
 
+#include "geometry/triangle_fields.h"
+
 namespace sac {
 namespace {
 
@@ -89,6 +91,12 @@ Eigen::MatrixXd Projection::ProjectPatches(const Eigen::MatrixXd& field) const {
                            c.component.count);
   }
   return InOrder(shape_.patch_basis, coefficients);
+}
+
+std::unique_ptr<const Projection> ProjectionOf(const Shape& shape) {
+  TriangleFields fields(shape.triangles);
+  fields.Measure(shape.positions, shape.positions);
+  return std::make_unique<const Projection>(shape, fields.areas());
 }
 
 }  // namespace sac

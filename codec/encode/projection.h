@@ -3,6 +3,7 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Core>
+#include <memory>
 #include <vector>
 
 #include "codec/shape.h"
@@ -10,7 +11,7 @@
 namespace sac {
 
 // Projects fields onto the harmonics by least squares, component by component. Results are harmonics x channels, with
-// rows in the order of a plane's coefficients.
+// rows in the order of a plane's coefficients. Threads may share it.
 class Projection {
  public:
   // `shape` must outlive the object. `areas` has the weight of each triangle.
@@ -38,5 +39,8 @@ class Projection {
   Eigen::VectorXd areas_;
   std::vector<Systems> systems_;
 };
+
+// The projection onto the harmonics of `shape`, which must outlive it, by the areas of its triangles.
+std::unique_ptr<const Projection> ProjectionOf(const Shape& shape);
 
 }  // namespace sac

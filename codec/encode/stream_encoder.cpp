@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cstddef>
 #include <string>
+#include <utility>
 
 #include "codec/encode/input_check.h"
 #include "format/group.h"
@@ -14,13 +15,9 @@ namespace sac {
 namespace {
 
 // The rows `inputs` of `positions`, one for each coded vertex.
-PositionMatrix InDecodedOrder(std::span<const Vec3f> positions, const std::vector<std::uint32_t>& inputs) {
-  PositionMatrix ordered(static_cast<Eigen::Index>(inputs.size()), 3);
-  for (std::size_t v = 0; v < inputs.size(); ++v) {
-    const Vec3f& p = positions[inputs[v]];
-    ordered.row(static_cast<Eigen::Index>(v)) << static_cast<double>(p[0]), static_cast<double>(p[1]),
-        static_cast<double>(p[2]);
-  }
+Positions InDecodedOrder(std::span<const Vec3f> positions, const std::vector<std::uint32_t>& inputs) {
+  Positions ordered(inputs.size());
+  for (std::size_t v = 0; v < inputs.size(); ++v) ordered[v] = positions[inputs[v]];
   return ordered;
 }
 
@@ -31,24 +28,11 @@ StreamEncoder::StreamEncoder(EncodedStart start, const EncoderSettings& settings
       settings_(settings),
       info_(InfoOf(start_.header)),
       writer_(settings.index, settings.repeat_start) {
-  Begin();
+  BeginGroups();
   if (!settings.metadata.empty()) writer_.Skippable(PacketType::kMetadata, WriteMetadata(settings.metadata));
   for (const ExtraPacket& packet : settings.extra_packets) {
     writer_.Skippable(static_cast<PacketType>(packet.type), packet.payload);
   }
-}
-
-void StreamEncoder::Begin() {
-  inputs_ = start_.order;
-  if (const std::vector<std::uint32_t>& vertex_of_copy = start_.shape.vertex_of_copy; !vertex_of_copy.empty()) {
-    inputs_.assign(start_.header.vertices, static_cast<std::uint32_t>(vertex_of_copy.size()));
-    for (std::size_t i = 0; i < vertex_of_copy.size(); ++i) {
-      std::uint32_t& input = inputs_[vertex_of_copy[i]];
-      input = std::min(input, start_.order[i]);
-    }
-  }
-  encoder_.emplace(start_.shape, start_.header, start_.max_error);
-  writer_.Start(WriteSequenceHeader(start_.header), start_.i_frame);
 }
 
 Status StreamEncoder::AtFault(Status status, std::uint32_t frame, std::optional<std::uint32_t> vertex) {
@@ -59,17 +43,34 @@ Status StreamEncoder::AtFault(Status status, std::uint32_t frame, std::optional<
                                  status.message());
 }
 
-Status StreamEncoder::AtFault(Status status, std::uint32_t first) {
-  return AtFault(std::move(status), first + encoder_->failed_frame(), inputs_[encoder_->failed_vertex()]);
+void StreamEncoder::BeginGroups() {
+  inputs_ = start_.order;
+  if (const std::vector<std::uint32_t>& vertex_of_copy = start_.shape.vertex_of_copy; !vertex_of_copy.empty()) {
+    inputs_.assign(start_.header.vertices, static_cast<std::uint32_t>(vertex_of_copy.size()));
+    for (std::size_t i = 0; i < vertex_of_copy.size(); ++i) {
+      std::uint32_t& input = inputs_[vertex_of_copy[i]];
+      input = std::min(input, start_.order[i]);
+    }
+  }
+  window_.reset();
+  chain_.reset();
+  projection_ = ProjectionOf(start_.shape);
+  full_group_ = FullGroup(start_, settings_.limits);
+  if (settings_.low_delay) {
+    chain_.emplace(start_.shape, start_.header, start_.max_error, *projection_);
+  } else {
+    window_.emplace(start_, *projection_, settings_);
+  }
+  writer_.Start(WriteSequenceHeader(start_.header), start_.i_frame);
 }
 
-Status StreamEncoder::CheckJoined(std::span<const Vec3f> positions, std::uint32_t frame) {
+Status StreamEncoder::CheckJoined(std::span<const Vec3f> positions) {
   const std::vector<std::uint32_t>& vertex_of_copy = start_.shape.vertex_of_copy;
   for (std::size_t i = 0; i < vertex_of_copy.size(); ++i) {
     const std::uint32_t copy = start_.order[i], joined = inputs_[vertex_of_copy[i]];
     if (positions[copy] == positions[joined]) continue;
-    return AtFault(Status::InvalidArgument("parts from vertex " + std::to_string(joined) + ", which it is joined with"),
-                   frame, copy);
+    return Refuse(Status::InvalidArgument("parts from vertex " + std::to_string(joined) + ", which it is joined with"),
+                  copy);
   }
   return Status::Ok();
 }
@@ -77,40 +78,46 @@ Status StreamEncoder::CheckJoined(std::span<const Vec3f> positions, std::uint32_
 Status StreamEncoder::Send(std::span<const Vec3f> positions) {
   if (finished_) return Status::InvalidArgument("the stream is finished");
   SAC_RETURN_IF_ERROR(failure_);
-  const auto frame = writer_.frames() + static_cast<std::uint32_t>(waiting_.size());
   if (positions.size() != start_.order.size()) {
-    return AtFault(Status::InvalidArgument(std::to_string(positions.size()) + " vertices, expected " +
-                                           std::to_string(start_.order.size())),
-                   frame, std::nullopt);
+    return Refuse(Status::InvalidArgument(std::to_string(positions.size()) + " vertices, expected " +
+                                          std::to_string(start_.order.size())));
   }
-  SAC_RETURN_IF_ERROR(AtFault(CheckFinite(positions), frame, std::nullopt));
-  SAC_RETURN_IF_ERROR(CheckJoined(positions, frame));
+  if (Status status = CheckFinite(positions); !status.ok()) return Refuse(std::move(status));
+  SAC_RETURN_IF_ERROR(CheckJoined(positions));
   if (settings_.bounds) AddBounds(positions);
-  PositionMatrix ordered = InDecodedOrder(positions, inputs_);
+  Positions ordered = InDecodedOrder(positions, inputs_);
   if (settings_.low_delay) return Latch(EncodeFrame(std::move(ordered)));
   waiting_.push_back(std::move(ordered));
-  return IsFull(static_cast<std::uint32_t>(waiting_.size())) ? Latch(EncodeGroup()) : Status::Ok();
+  if (waiting_.size() < full_group_) return Status::Ok();
+  window_->Add(std::exchange(waiting_, {}), true);
+  return window_->IsFull() ? Latch(EncodeGroups()) : Status::Ok();
 }
 
-// A group is full when it has the number of frames of the settings or one more would exceed the decoders' limits.
-bool StreamEncoder::IsFull(std::uint32_t frames) const {
-  return frames == settings_.group || (std::uint64_t{frames} + 1) * FrameValues(start_.shape.layouts) >
-                                          MaxGroupValues(settings_.limits, start_.shape);
+Status StreamEncoder::Refuse(Status status, std::optional<std::uint32_t> vertex) {
+  SAC_RETURN_IF_ERROR(Flush());  // a frame before may be at fault
+  return AtFault(std::move(status), writer_.frames() + static_cast<std::uint32_t>(waiting_.size()), vertex);
 }
 
-Status StreamEncoder::EncodeFrame(PositionMatrix positions) {
+Status StreamEncoder::Flush() {
+  SAC_RETURN_IF_ERROR(failure_);
+  return window_ ? Latch(EncodeGroups()) : Status::Ok();
+}
+
+Status StreamEncoder::EncodeFrame(Positions positions) {
   if (open_frames_ == 0) {
     writer_.OpenGroup();
     coder_.emplace(start_.header, start_.shape.layouts);
   }
   FrameSyntax frame;
-  SAC_RETURN_IF_ERROR(
-      AtFault(encoder_->EncodeNext(std::move(positions), open_frames_, frame), writer_.frames() - open_frames_));
+  if (Status status = chain_->EncodeNext(std::move(positions), open_frames_, frame); !status.ok()) {
+    return AtFault(std::move(status), writer_.frames() - open_frames_ + chain_->failed_frame(),
+                   inputs_[chain_->failed_vertex()]);
+  }
   RangeEncoder range;  // a coder of its own, since each frame is a record; the models in coder_ continue
   FrameBits bits;
   if (!coder_->Code(range, ChainSlot(open_frames_), frame, &bits)) return AtFault(MotionTooFar(), writer_.frames(), {});
   writer_.Frame(range.Finish(), bits);
-  if (IsFull(++open_frames_)) EndOpenGroup();
+  if (++open_frames_ >= full_group_) EndOpenGroup();
   return Progress(writer_.frames());
 }
 
@@ -119,59 +126,48 @@ void StreamEncoder::EndOpenGroup() {
   open_frames_ = 0;
 }
 
-Status StreamEncoder::EncodeGroup() {
-  GroupSyntax group;
-  group.frames = static_cast<std::uint32_t>(waiting_.size());
-  // A pyramid larger than the group is as one of its size.
-  group.pyramid = start_.header.references_previous() ? 1 : std::min(settings_.pyramid, group.frames);
-  group.base_levels = start_.header.references_previous() ? 0 : settings_.base_levels;
-  std::vector<FrameSlot> structure = GroupStructure(group.frames, group.pyramid);
-  if (group.layered()) structure = LayeredOrder(structure, group.base_levels);
+Status StreamEncoder::EncodeGroups() {
+  if (window_->empty()) return Status::Ok();
   const std::uint32_t before = writer_.frames();
-  const auto frame_done = [&](std::uint32_t count) { return Progress(before + count); };
-  std::vector<FrameSyntax> coded;
-  SAC_RETURN_IF_ERROR(AtFault(encoder_->Encode(std::exchange(waiting_, {}), structure, frame_done, coded), before));
-  FrameBits bits;
-  std::vector<std::vector<std::uint8_t>> codes;
-  SAC_RETURN_IF_ERROR(CodeLayers(group, structure, coded, bits, codes));
-  writer_.Group(group, codes, bits);
+  const auto progress = [&](std::uint32_t count) { return !settings_.progress || settings_.progress(before + count); };
+  std::vector<ClosedGroup> groups;
+  if (Status status = window_->Encode(progress, groups); !status.ok()) {
+    waiting_.clear();
+    return status;
+  }
+  for (ClosedGroup& group : groups) {
+    if (!group.status.ok()) {
+      waiting_.clear();
+      std::optional<std::uint32_t> vertex;
+      if (group.failed_vertex) vertex = inputs_[*group.failed_vertex];
+      return AtFault(std::move(group.status), writer_.frames() + group.failed_frame, vertex);
+    }
+    writer_.Group(group.syntax, group.codes, group.bits);
+  }
   return Status::Ok();
 }
 
-Status StreamEncoder::CodeLayers(const GroupSyntax& group, const std::vector<FrameSlot>& structure,
-                                 std::vector<FrameSyntax>& coded, FrameBits& bits,
-                                 std::vector<std::vector<std::uint8_t>>& codes) {
-  FrameCoder<RangeEncoder> coder(start_.header, start_.shape.layouts);
-  std::vector<GroupLayer> layers = {{0, structure.size(), kMotion}};
-  if (group.layered()) layers = LayersOf(structure, group.base_levels, start_.shape.layouts);
-  for (const GroupLayer& layer : layers) {
-    RangeEncoder range;
-    for (std::size_t i = layer.first; i < layer.end; ++i) {
-      FrameSyntax& frame = coded[i];
-      const bool good = !group.layered()     ? coder.Code(range, structure[i], frame, &bits)
-                        : layer.has_frames() ? coder.CodeBase(range, structure[i], frame, &bits)
-                                             : coder.CodeLater(range, i, layer.plane, frame, &bits);
-      if (!good) return AtFault(MotionTooFar(), writer_.frames() + structure[i].display, {});
-    }
-    codes.push_back(range.Finish());
-  }
-  return Status::Ok();
+Status StreamEncoder::EndGroups() {
+  EndOpenGroup();
+  if (!window_) return Status::Ok();
+  if (!waiting_.empty()) window_->Add(std::exchange(waiting_, {}), false);
+  return Latch(EncodeGroups());
 }
 
 Status StreamEncoder::BeginSegment(EncodedStart start) {
   if (finished_) return Status::InvalidArgument("the stream is finished");
   SAC_RETURN_IF_ERROR(failure_);
-  EndOpenGroup();
-  if (!waiting_.empty()) SAC_RETURN_IF_ERROR(Latch(EncodeGroup()));
-  encoder_.reset();
+  SAC_RETURN_IF_ERROR(EndGroups());
+  window_.reset();
+  chain_.reset();
   start_ = std::move(start);
   info_ = InfoOf(start_.header);
-  Begin();
+  BeginGroups();
   return Status::Ok();
 }
 
 void StreamEncoder::AddBounds(std::span<const Vec3f> positions) {
-  const std::size_t group = writer_.groups() - (open_frames_ > 0 ? 1 : 0);
+  const std::size_t group = writer_.groups() - (open_frames_ > 0 ? 1 : 0) + (window_ ? window_->size() : 0);
   const Box box = BoundingBox(positions);
   if (group_boxes_.size() == group) {
     group_boxes_.push_back(box);
@@ -181,6 +177,7 @@ void StreamEncoder::AddBounds(std::span<const Vec3f> positions) {
 }
 
 void StreamEncoder::WriteBounds() {
+  group_boxes_.resize(std::min(group_boxes_.size(), writer_.groups()));  // without those that could not be coded
   if (group_boxes_.empty()) return;
   Metadata metadata;
   Box bounds = group_boxes_.front();
@@ -197,8 +194,7 @@ Status StreamEncoder::Finish() {
   // After a frame that cannot be coded the stream ends with what was complete before it.
   const bool ends_early = failure_.code() == StatusCode::kInvalidArgument && writer_.frames() > 0;
   if (!ends_early) SAC_RETURN_IF_ERROR(failure_);
-  EndOpenGroup();
-  if (!waiting_.empty()) SAC_RETURN_IF_ERROR(Latch(EncodeGroup()));
+  SAC_RETURN_IF_ERROR(EndGroups());
   WriteBounds();
   writer_.End();
   finished_ = true;

@@ -38,6 +38,12 @@ struct EncodingProgress {
 // Rounds of fitting the I-frame's shape that pay for their time on most clips (docs/decisions.md).
 inline constexpr std::uint32_t kReferenceRounds = 2;
 
+// A part of a clip that is encoded from the start of the whole.
+struct ClipPart {
+  std::vector<std::uint8_t> start;  // Encoder::start()
+  std::uint32_t first_frame = 0;    // the number in the clip of the first frame that the reader gives
+};
+
 struct ClipEncoding {
   EncoderSettings encoder;  // steps, position bits, quality and, unless given, harmonics are searched with targets
   RateTargets targets;
@@ -47,6 +53,10 @@ struct ClipEncoding {
   // with low_delay, where the reference is the frame before, and in clips of three frames or fewer. Where it is not
   // given: kReferenceRounds, or 0 if `measure` is false and there are no targets.
   std::optional<std::uint32_t> reference_rounds;
+  // With it the reader gives a run of frames of one segment, beginning at a border of groups, which is encoded from the
+  // start: see Encoder::CreateFrom(). The metadata say the number of its first frame. No targets; the shape is the
+  // start's.
+  std::optional<ClipPart> part;
   // Is called between frames, on the caller's thread. Returns whether to go on; false ends in kCancelled.
   std::function<bool(const EncodingProgress&)> progress;
 };
@@ -61,6 +71,7 @@ struct EncodedClip {
   std::uint32_t frames = 0;          // in the stream
   std::uint64_t positions = 0;       // vertices of all frames
   std::uint32_t segments = 0;        // meshes
+  std::uint32_t group_frames = 0;    // of a full group
   std::uint32_t trials = 0;          // trial encodings: for targets, and for the I-frames' shapes
   bool fitted_reference = false;     // an I-frame's shape is one that was fitted to the frames, not a first frame
   DistortionMetrics distortion;      // of what a decoder makes of the stream; all zero where it was not measured
@@ -72,6 +83,11 @@ struct EncodedClip {
   // Bits a vertex and frame, all bytes counted.
   double bpvf() const { return 8 * static_cast<double>(bytes) / static_cast<double>(positions); }
 };
+
+// Finds the vertices of a clip's first segment that coincide in all of its frames, as far as these can be read and
+// coded. `lowest` gets what Encoder::Create() takes: of each vertex the lowest that it coincides with; nothing where
+// none do. The clip is read once where vertices coincide in its mesh, and not at all otherwise. The errors of Rewind().
+Status FindJoinedVertices(ClipReader& clip, std::vector<std::uint32_t>& lowest);
 
 // Encodes a clip, each of its meshes as a segment, decodes the stream again as it comes and measures it against the
 // clip, which has to be at its first segment and is rewound before each encoding. Without a frame rate in the settings

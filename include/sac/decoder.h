@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "sac/job_runner.h"
 #include "sac/limits.h"
 #include "sac/mesh.h"
 #include "sac/metadata.h"
@@ -16,10 +17,6 @@
 #include "sac/stream_info.h"
 
 namespace sac {
-
-// Runs jobs 0 to `jobs` - 1: calls `job` once with each number, in any order and on any threads, and returns when all
-// calls have returned. `job` throws nothing.
-using JobRunner = std::function<void(std::size_t jobs, const std::function<void(std::size_t)>& job)>;
 
 struct DecoderSettings {
   Limits limits;

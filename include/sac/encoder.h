@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "sac/job_runner.h"
 #include "sac/limits.h"
 #include "sac/mesh.h"
 #include "sac/metadata.h"
@@ -60,8 +61,17 @@ struct EncoderSettings {
   bool bounds = false;  // puts the bounds of the clip and of its groups at the end of the stream
   // Packets that decoders pass over, after the first mesh.
   std::vector<ExtraPacket> extra_packets;
+  // How many groups are coded at the same time, at most 1024; the frames of as many are held then, as far as they fit
+  // into 2 GiB. 0: as many as the machine has processors. 1: all work is done by the caller's thread. The bytes are the
+  // same with any number. Frames that come one by one (low_delay) are coded by the caller's thread.
+  unsigned threads = 0;
+  // The job system that codes groups, called with at most `threads` jobs from within Send(), BeginSegment(), Flush()
+  // and Finish(). Empty: threads that live as long as the call, or the caller's where the platform has none. A call
+  // fails with kInvalidArgument when a runner throws or runs no job, with kLimit when it throws std::bad_alloc.
+  JobRunner run_jobs;
   // Is called on the caller's thread between the steps of Create(), with 0, and with the number of frames coded after
-  // each frame. Returns whether to go on; after false the encoder answers kCancelled and cannot go on.
+  // each frame; where other threads code frames, at least when a number of groups is done. Returns whether to go on;
+  // after false the encoder answers kCancelled and cannot go on.
   std::function<bool(std::uint32_t frames)> progress;
   // What the decoders it is for are ready to spend. A quality gets fewer harmonics when these would be too many;
   // what exceeds them otherwise is refused, kLimit.
@@ -75,8 +85,8 @@ struct FrameFault {
   std::optional<std::uint32_t> vertex;
 };
 
-// Turns frames into a stream, one at a time. Holds one group, not the clip. With low_delay a frame's bytes can be taken
-// as soon as it is sent; otherwise those of a group when it is full.
+// Turns frames into a stream, one at a time. Holds one group a thread, not the clip. With low_delay a frame's bytes can
+// be taken as soon as it is sent; otherwise those of groups when there is one for each thread, or after Flush().
 //
 //   std::unique_ptr<sac::Encoder> encoder;
 //   status = sac::Encoder::Create(mesh, settings, encoder);   // mesh: the first frame with its triangles
@@ -96,6 +106,15 @@ class Encoder {
   // it coincides with in all frames, which may be itself. Those without triangles are not.
   static Status Create(const Mesh& mesh, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder,
                        std::span<const std::uint32_t> lowest = {});
+  // An encoder that goes on from a start, which start() of another gave: it codes any run of frames of that clip as a
+  // stream of its own. What the start holds is not taken from `settings`: all that concerns the shape, steps, the
+  // structure of groups, frame rate and offset. Where the run begins with a multiple of group_frames(), its groups have
+  // the bytes that one encoder of the whole clip gives them (on a machine with the same floating-point results), and
+  // `sac join` puts the runs together to its stream. kInvalidArgument for settings out of range and low_delay,
+  // kCorrupt for bytes that are no start, kUnsupported for one of another version or with harmonics that are not those
+  // that are computed here, kLimit as Create().
+  static Status CreateFrom(std::span<const std::uint8_t> start, const EncoderSettings& settings,
+                           std::unique_ptr<Encoder>& encoder);
   ~Encoder();
   Encoder(const Encoder&) = delete;
   Encoder& operator=(const Encoder&) = delete;
@@ -111,8 +130,16 @@ class Encoder {
   // of Create(), and as of Send() for the frames before; after a failure of Create()'s kind the encoder goes on with
   // the mesh before.
   Status BeginSegment(const Mesh& mesh, std::span<const std::uint32_t> lowest = {});
+  // Codes the groups that are full but wait for others to be coded at the same time. Status as of Send() for the frames
+  // before.
+  Status Flush();
   // Ends the stream. It fails with Send()'s failure when nothing was coded before.
   Status Finish();
+
+  // The start of the segment for CreateFrom(): header, I-frame, and the settings that groups are coded with.
+  std::vector<std::uint8_t> start() const;
+  // How many frames a full group has.
+  std::uint32_t group_frames() const;
 
   // The frame and the vertex that the last failure of Send() or Finish() was about.
   std::optional<FrameFault> fault() const;

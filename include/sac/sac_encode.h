@@ -7,7 +7,7 @@
  *   if (sac_encoder_open(&encoder, &mesh, &settings) != SAC_OK) goto failed;
  *   for (each frame, the first one too) {
  *     if (sac_encoder_send(encoder, positions, 0) != SAC_OK) goto failed;
- *     sac_encoder_take(encoder, &data, &size);                  // in order, a group at a time
+ *     sac_encoder_take(encoder, &data, &size);                  // in order, a group a thread at a time
  *     write(data, size);
  *   }
  *   if (sac_encoder_finish(encoder) != SAC_OK) goto failed;
@@ -32,9 +32,9 @@
 extern "C" {
 #endif
 
-/* Called on the caller's thread between frames. `trial` is the number of a trial encoding, from 1, and 0 in an encoding
- * that is none; `frames` of it are coded. The bytes that sac_encode_clip() gives out may be those of a trial. Anything
- * but 0 ends in SAC_CANCELLED. */
+/* Called on the caller's thread between the frames that it codes, and when those of other threads are done. `trial` is
+ * the number of a trial encoding, from 1, and 0 in an encoding that is none; `frames` of it are coded. The bytes that
+ * sac_encode_clip() gives out may be those of a trial. Anything but 0 ends in SAC_CANCELLED. */
 typedef int (*sac_progress)(void* user, uint32_t trial, uint32_t frames);
 
 /* Set it with sac_encoder_settings_init(), then change what is to be different. Doubles that are NaN, and harmonics 0,
@@ -89,6 +89,14 @@ typedef struct sac_encoder_settings {
    * has. -1: those that coincide in all frames, for sac_encode_clip() alone; 1: also those that coincide in the mesh of
    * sac_encoder_open(), and frames in which they part are refused; 0: none. */
   int32_t join;
+  /* How many groups are coded at the same time, at most 1024; their frames are held then. 0: as many as the machine has
+   * processors; 1: all work is done by the caller's thread. The bytes are the same with any number. Not with low_delay,
+   * where frames come one by one. */
+  uint32_t threads;
+  /* The job system that codes groups, called with at most `threads` jobs. Null: threads that live as long as the call.
+   * SAC_INVALID_ARGUMENT when it runs no job. */
+  sac_run_jobs run_jobs;
+  void* run_jobs_user;
 } sac_encoder_settings;
 
 /* The mesh of a clip; set all of it to 0 before. Its positions are the first frame's, or any near them for

@@ -264,6 +264,7 @@ TEST(CEncoder, CanBeCancelledAnywhere) {
     return c.left-- > 0 ? 0 : 1;
   };
   sac_encoder_settings settings = Settings();
+  settings.threads = 1;  // so that it is called after each frame
   settings.progress = progress;
   Countdown all{1000, 0};
   settings.user = &all;

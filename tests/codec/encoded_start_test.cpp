@@ -57,7 +57,7 @@ Bytes SmallStart() { return WriteStreamStart(Start(TurningPartsClip(1), Small())
 
 // `bytes` with `change` made to what follows the packets, under a CRC-32 that is right.
 Bytes WithEncoderPart(Bytes bytes, const std::function<void(std::span<std::uint8_t>)>& change) {
-  const std::size_t size = 8 + 4 * TurningPartsClip(1).mesh.positions.size();
+  const std::size_t size = 8 + 4 * TurningPartsClip(1).mesh.positions.size() + 12;
   const std::span<std::uint8_t> part = std::span(bytes).subspan(bytes.size() - 4 - size, size);
   change(part);
   const std::uint32_t crc = Crc32(part);
@@ -98,7 +98,7 @@ TEST(EncodedStart, WrittenStartsBeginAsTheirStreamsDo) {
   const Clip clip = BendingClip(3);
   const EncodedStart start = Start(clip, Small());
   const Bytes written = WriteStreamStart(start), stream = Encode(clip, Small()).bytes;
-  const std::size_t packets = written.size() - 8 - 4 * clip.mesh.positions.size() - 4;
+  const std::size_t packets = written.size() - 8 - 4 * clip.mesh.positions.size() - 12 - 4;
   EXPECT_TRUE(std::equal(written.begin(), written.begin() + static_cast<std::ptrdiff_t>(packets), stream.begin()));
 }
 

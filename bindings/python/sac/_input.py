@@ -22,6 +22,8 @@ _NOT_OPTIONS = {
     "frame_rate_denominator",
     "progress",
     "user",
+    "run_jobs",
+    "run_jobs_user",
     "offset",
     "has_first_frame",
 }

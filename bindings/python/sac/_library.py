@@ -152,6 +152,9 @@ class EncoderSettings(ctypes.Structure):
         ("has_first_frame", c_uint32),
         ("bounds", c_uint32),
         ("join", c_int32),
+        ("threads", c_uint32),
+        ("run_jobs", c_void_p),
+        ("run_jobs_user", c_void_p),
     ]
 
 

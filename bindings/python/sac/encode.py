@@ -165,7 +165,8 @@ def encode(
             ``motion_step``, ``displacement_step``, ``detail_step``, ``position_bits``, ``reference_rounds``, ... and what the
             stream says of the clip: ``name``, ``json`` (texts), ``metres_per_unit``, ``up_axis`` (0, 1, 2: x, y, z),
             ``first_frame``, ``loops``, ``bounds`` (whether it holds the box of all frames); ``join=0`` codes
-            vertices apart that coincide in all frames.
+            vertices apart that coincide in all frames; ``threads``, how many groups are coded at the same time [as many
+            as the machine has processors].
 
     Other threads run meanwhile, but for the moments in which a frame is fetched.
 

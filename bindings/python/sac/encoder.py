@@ -19,8 +19,8 @@ from ._library import EncoderSettings, Indices, StreamBytes, lib
 class Encoder:
     """Turns frames into a stream as they come: ``send()`` each, write what it returns, then what ``finish()`` returns.
 
-    Nothing is searched or measured; :func:`encode` does both. It holds one group of frames, with ``low_delay`` one
-    frame. One thread at a time may use it.
+    Nothing is searched or measured; :func:`encode` does both. It holds one group of frames a thread, with ``low_delay``
+    one frame. One thread at a time may use it.
 
     Args:
         faces: (triangles, 3) indices of vertices.
