@@ -125,9 +125,9 @@ class Encoding {
     const bool given = result_.segments < task_.shapes.size() && task_.shapes[result_.segments];
     return given ? *task_.shapes[result_.segments] : clip_.mesh();
   }
-  // Which vertices of that segment are joined.
-  std::span<const std::uint32_t> Joined() const {
-    return result_.segments < task_.joined.size() ? task_.joined[result_.segments] : std::span<const std::uint32_t>();
+  // What is known of that segment.
+  const LookAhead& Known() const {
+    return result_.segments < task_.known.size() ? task_.known[result_.segments] : nothing_;
   }
   // Gives out and measures what has been coded.
   Status Take();
@@ -139,6 +139,7 @@ class Encoding {
   ClipReader& clip_;
   const EncodingTask& task_;
   EncodedClip& result_;
+  const LookAhead nothing_;
   bool measure_;
   Measurement measurement_;
   std::unique_ptr<Encoder> encoder_;
@@ -180,7 +181,7 @@ Status Encoding::EncodeSegment() {
 Status Encoding::BeginNextSegment(bool& end) {
   SAC_RETURN_IF_ERROR(clip_.NextSegment(end));
   if (end) return Status::Ok();
-  const Status begun = encoder_->BeginSegment(Shape(), Joined());
+  const Status begun = encoder_->BeginSegment(Shape(), Known().lowest, Known().reach);
   if (begun.ok()) return Take();
   return encoder_->fault() ? Fail(begun) : Named(clip_.name_of(clip_.first_frame()), begun);
 }
@@ -191,7 +192,7 @@ Status Encoding::Run(const EncoderSettings& settings) {
   SAC_RETURN_IF_ERROR(clip_.Rewind());
   EncoderSettings own = settings;
   own.join = false;  // but for those of the task
-  SAC_RETURN_IF_ERROR(Named(name, Encoder::Create(Shape(), own, encoder_, Joined())));
+  SAC_RETURN_IF_ERROR(Named(name, Encoder::Create(Shape(), own, encoder_, Known().lowest, Known().reach)));
   for (bool end = false; !end;) {
     SAC_RETURN_IF_ERROR(EncodeSegment());
     SAC_RETURN_IF_ERROR(BeginNextSegment(end));

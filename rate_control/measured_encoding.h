@@ -24,14 +24,19 @@ using ByteSink = std::function<Status(std::span<const std::uint8_t> bytes)>;
 // is empty.
 Status Named(const std::string& name, const Status& status);
 
+// What is known of the frames of a segment before they are coded; empty where there is nothing to know.
+struct LookAhead {
+  std::vector<std::uint32_t> lowest;  // of each vertex the lowest that it coincides with in all of them
+  std::vector<float> reach;           // of each vertex, as EncoderSettings::reach
+};
+
 // What an encoding does beside coding the frames of a clip.
 struct EncodingTask {
   // The mesh of each segment's I-frame; the clip's own where there is none.
   std::span<const std::optional<Mesh>> shapes = {};
-  // For each segment the lowest vertex that each of its vertices is joined with; empty where none is.
-  std::span<const std::vector<std::uint32_t>> joined = {};
-  bool measure = true;  // decodes the stream while it is encoded and measures it against the clip
-  ByteSink sink;        // gets the bytes; it may be empty
+  std::span<const LookAhead> known = {};  // of each segment
+  bool measure = true;                    // decodes the stream while it is encoded and measures it against the clip
+  ByteSink sink;                          // gets the bytes; it may be empty
   // With `measure`: gets the decoded shape and all frames of a clip that has one segment; null: nobody does.
   ShapeResidual* residual = nullptr;
 };

@@ -89,6 +89,11 @@ typedef struct sac_encoder_settings {
    * has. -1: those that coincide in all frames, for sac_encode_clip() alone; 1: also those that coincide in the mesh of
    * sac_encoder_open(), and frames in which they part are refused; 0: none. */
   int32_t join;
+  /* How far a vertex moves at most from its place in the mesh, the rigid motion of the whole taken away; model units.
+   * Where it is known, components much smaller than the mesh are coded finer, so that their error is in proportion to
+   * their own size; frames that go twice as far may be refused. NaN: sac_encode_clip() measures it, sac_encoder_open()
+   * does without. Not with max_error. */
+  double reach;
 } sac_encoder_settings;
 
 /* The mesh of a clip; set all of it to 0 before. Its positions are the first frame's, or any near them for

@@ -152,6 +152,7 @@ class EncoderSettings(ctypes.Structure):
         ("has_first_frame", c_uint32),
         ("bounds", c_uint32),
         ("join", c_int32),
+        ("reach", c_double),
     ]
 
 
