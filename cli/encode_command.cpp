@@ -144,10 +144,10 @@ Status EncodeStartFile(const EncodeOptions& options) {
   OutputFile file;
   SAC_RETURN_IF_ERROR(file.Open(options.output));
   std::unique_ptr<Encoder> encoder;
-  std::vector<std::uint32_t> lowest;
-  if (settings.join.value_or(true)) SAC_RETURN_IF_ERROR(FindJoinedVertices(*input, lowest));
-  settings.join = false;  // but for these
-  if (const Status s = Encoder::Create(input->mesh(), settings, encoder, lowest); !s.ok()) {
+  LookAhead known;
+  SAC_RETURN_IF_ERROR(ReadAhead(*input, settings, known));
+  settings.join = false;  // but for those that are known to coincide
+  if (const Status s = Encoder::Create(input->mesh(), settings, encoder, known.lowest, known.reach); !s.ok()) {
     return AtInput(options, s.message());
   }
   const std::vector<std::uint8_t> start = encoder->start();

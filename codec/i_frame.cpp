@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <numeric>
+#include <string>
 #include <utility>
 
 #include "codec/patches.h"
@@ -245,6 +247,11 @@ Status AssembleIFrame(const IFrameSyntax& syntax, const SequenceHeader& header, 
   JoinNormals(syntax, parts);
   const std::vector<std::uint32_t> renumbered = Renumber(header.patch_size, parts, out.mesh);
   const std::vector<std::uint32_t> copies = RenumberCopies(renumbered, parts, out);
+  if (!syntax.scales.empty() && syntax.scales.size() != out.mesh.components.size()) {
+    return Status::Corrupt("I-frame: scales of " + std::to_string(syntax.scales.size()) + " components, there are " +
+                           std::to_string(out.mesh.components.size()));
+  }
+  out.mesh.scales = syntax.scales;
   out.normals = std::move(parts.draco.normals);
   out.normal_triangles = std::move(parts.draco.normal_triangles);
   if (out.normal_triangles.empty()) out.normals = Scatter(out.normals, copies, copies.size());

@@ -37,6 +37,14 @@ Parts InFunctions(const HarmonicBasis& basis) {
   return parts;
 }
 
+// The factor of the steps in the component that holds `vertex`.
+double FactorAt(const Shape& shape, std::uint32_t vertex) {
+  if (shape.factors.empty()) return 1;
+  const auto after = std::upper_bound(shape.components.begin(), shape.components.end(), vertex,
+                                      [](std::uint32_t v, const Component& c) { return v < c.first; });
+  return shape.factors[static_cast<std::size_t>(after - shape.components.begin()) - 1];
+}
+
 }  // namespace
 
 void ToPositions(const PositionMatrix& matrix, Positions& positions) {
@@ -50,15 +58,18 @@ void ToPositions(const PositionMatrix& matrix, Positions& positions) {
 
 Eigen::VectorXd PlaneUnits(const Shape& shape, const SequenceHeader& header, Plane plane) {
   const HarmonicBasis& basis = BasisOf(shape, plane);
-  Eigen::ArrayXd counts(static_cast<Eigen::Index>(basis.order.size()));
-  for (std::size_t i = 0; i < basis.order.size(); ++i) {
-    counts[static_cast<Eigen::Index>(i)] = basis.components[basis.order[i].component].component.count;
+  const auto rows = static_cast<Eigen::Index>(basis.order.size());
+  Eigen::ArrayXd counts(rows), factors(rows);
+  for (Eigen::Index i = 0; i < rows; ++i) {
+    const Component& part = basis.components[basis.order[static_cast<std::size_t>(i)].component].component;
+    counts[i] = part.count;
+    factors[i] = FactorAt(shape, part.first);
   }
   const Eigen::ArrayXd share = static_cast<double>(shape.vertices()) / counts;
   if (plane == kMotion) return static_cast<double>(header.motion_step) / kCoefficientsPerStep * share.sqrt().sqrt();
   if (plane == kDisplacement)
-    return static_cast<double>(header.displacement_step) / kCoefficientsPerStep * share.sqrt();
-  return static_cast<double>(header.detail_step) / kCoefficientsPerStep / counts.sqrt();
+    return static_cast<double>(header.displacement_step) / kCoefficientsPerStep * share.sqrt() * factors;
+  return static_cast<double>(header.detail_step) / kCoefficientsPerStep / counts.sqrt() * factors;
 }
 
 PlaneField::PlaneField(std::vector<Part> parts, std::span<const HarmonicIndex> order, std::size_t channels,

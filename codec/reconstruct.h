@@ -56,9 +56,9 @@ class PlaneField {
 };
 
 // The unit of the coefficients in each row of `plane` (spec.md 6.5.1): a sixteenth of the header's step, scaled by the
-// size of the row's component. The units of motion and displacement are larger in components with few vertices. The
-// unit of detail is divided by the square root of the patch's number of vertices, so that the error of a vertex does
-// not depend on the number of harmonics.
+// size of the row's component, and but for motion by its factor. The units of motion and displacement are larger in
+// components with few vertices. The unit of detail is divided by the square root of the patch's number of vertices, so
+// that the error of a vertex does not depend on the number of harmonics.
 Eigen::VectorXd PlaneUnits(const Shape& shape, const SequenceHeader& header, Plane plane);
 
 // Turns coefficients into positions. Encoder and decoder both call it.

@@ -91,12 +91,17 @@ Status FactorizeSystem(const SequenceHeader& header, std::span<const std::uint32
 
 }  // namespace
 
-PositionMatrix ShapePositions(const SequenceHeader& header, std::span<const GridPosition> grid) {
-  PositionMatrix positions(static_cast<Eigen::Index>(grid.size()), 3);
+PositionMatrix ShapePositions(const SequenceHeader& header, const DecodedMesh& mesh) {
+  PositionMatrix positions(static_cast<Eigen::Index>(mesh.grid.size()), 3);
   const Eigen::RowVector3d origin(header.origin_x, header.origin_y, header.origin_z);
-  for (std::size_t v = 0; v < grid.size(); ++v) {
-    positions.row(static_cast<Eigen::Index>(v)) =
-        origin + static_cast<double>(header.cell) * Eigen::RowVector3d(grid[v][0], grid[v][1], grid[v][2]);
+  const auto row = [](const GridPosition& p) { return Eigen::RowVector3d(p[0], p[1], p[2]); };
+  for (std::size_t c = 0; c < mesh.components.size(); ++c) {
+    const PartScale scale = mesh.scales.empty() ? PartScale{} : mesh.scales[c];
+    const Component& component = mesh.components[c];
+    for (std::uint32_t v = component.first; v < component.first + component.count; ++v) {
+      positions.row(v) =
+          origin + static_cast<double>(header.cell) * (row(scale.origin) + scale.factor() * row(mesh.grid[v]));
+    }
   }
   return positions;
 }
@@ -144,10 +149,11 @@ Status BuildShape(const SequenceHeader& header, DecodedMesh mesh, std::span<cons
 
   shape.triangles = std::move(mesh.triangles);
   shape.vertex_of_copy = std::move(mesh.vertex_of_copy);
+  shape.positions = ShapePositions(header, mesh);
+  for (const PartScale& scale : mesh.scales) shape.factors.push_back(scale.factor());
   shape.components = std::move(mesh.components);
   shape.edges = BuildEdges(shape.triangles);
   shape.graph = BuildEdgeGraph(static_cast<std::uint32_t>(mesh.grid.size()), shape.edges);
-  shape.positions = ShapePositions(header, mesh.grid);
   shape.masses = VertexMasses(shape.positions, shape.triangles);
   shape.centre = shape.masses.transpose() * shape.positions;
   std::vector<std::uint32_t> patch_sizes;

@@ -11,6 +11,7 @@
 #include "codec/blend_system.h"
 #include "codec/harmonics.h"
 #include "format/grid_position.h"
+#include "format/part_scale.h"
 #include "format/plane_layout.h"
 #include "format/sequence_header.h"
 #include "geometry/components.h"
@@ -31,6 +32,7 @@ struct DecodedMesh {
   // Of each vertex that decoders give out the one of `grid` that it is a copy of, ascending; empty when there is one of
   // each (spec.md 5.6).
   std::vector<std::uint32_t> vertex_of_copy;
+  std::vector<PartScale> scales;  // of each component; empty when all are the mesh's
 };
 
 // Gives each copy the value of its vertex: `values` has one a vertex before, one a copy afterwards. `vertex_of_copy` is
@@ -43,14 +45,15 @@ void SpreadToCopies(const std::vector<std::uint32_t>& vertex_of_copy, std::vecto
   for (std::size_t i = vertex_of_copy.size(); i-- > 0;) values[i] = values[vertex_of_copy[i]];
 }
 
-// The positions of M'0 whose places on the grid are `grid`, model units.
-PositionMatrix ShapePositions(const SequenceHeader& header, std::span<const GridPosition> grid);
+// The positions of M'0, model units.
+PositionMatrix ShapePositions(const SequenceHeader& header, const DecodedMesh& mesh);
 
 // Everything that both directions derive from the I-frame (spec.md 6).
 struct Shape {
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> vertex_of_copy;  // as in DecodedMesh
   std::vector<Component> components;
+  std::vector<double> factors;  // of the steps of displacement and detail in each component; empty: 1 (spec.md 6.5.1)
   EdgeList edges;
   EdgeGraph graph;            // of `edges`
   PositionMatrix positions;   // of M'0, model units

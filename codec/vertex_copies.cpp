@@ -9,8 +9,6 @@
 namespace sac {
 namespace {
 
-std::uint32_t Few(std::size_t count) { return static_cast<std::uint32_t>(std::min<std::size_t>(count, 3)) - 1; }
-
 // A number for each edge of each triangle, the same for those of the same two vertices; `none` for one of a vertex with
 // itself. `count` becomes how many there are.
 std::vector<Triangle> NumberEdges(const std::vector<Triangle>& triangles, std::uint32_t none, std::size_t& count) {
@@ -118,31 +116,47 @@ bool CopyCoder<Coder>::CodeCorner(Coder& coder, std::size_t j, std::size_t k, st
   const std::uint32_t count = counts_[triangles_[j][k]];
   const auto is_split = [&](std::size_t other) { return counts_[triangles_[j][other % 3]] > 1 ? 1u : 0u; };
   const std::uint32_t second = found_ > 1 ? candidates_[1].level : kLevels - 1;
-  const std::uint32_t split = is_split(k + 1) + is_split(k + 2);
+  const std::uint32_t split = is_split(k + 1) + is_split(k + 2), several = count > 1 ? 1 : 0;
   bool hit = copy == candidates_[0].copy;
-  coder.Bit(first_[(((candidates_[0].level * kLevels + second) * 3 + Few(count)) * 3 + split) * 3 + across_], hit);
+  coder.Bit(first_[(((candidates_[0].level * kLevels + second) * 2 + several) * 3 + split) * 3 + across_], hit);
   if (hit) {
     copy = candidates_[0].copy;
     return true;
   }
   if (found_ > 1) {
     hit = copy == candidates_[1].copy;
-    coder.Bit(second_[second * 3 + Few(count)], hit);
+    coder.Bit(second_[second], hit);
     if (hit) {
       copy = candidates_[1].copy;
       return true;
     }
   }
+  const auto tried = static_cast<std::uint32_t>(std::min<std::size_t>(found_, 2));
   bool is_new = copy == count;
-  if (count > std::min<std::size_t>(found_, 2)) {
+  if (count > tried) {
     coder.Bit(is_new_, is_new);
   } else {
     is_new = true;
   }
-  std::uint32_t back = is_new ? 0 : count - 1 - copy;  // a decoder overwrites this value by what it reads
-  if (!is_new) CodeUnsigned(coder, which_, back);
-  if (back >= count) return false;
-  copy = is_new ? count : count - 1 - back;
+  if (is_new) {
+    copy = count;
+    return true;
+  }
+  return CodeOther(coder, count, tried, copy);
+}
+
+template <class Coder>
+bool CopyCoder<Coder>::CodeOther(Coder& coder, std::uint32_t count, std::uint32_t tried, std::uint32_t& copy) {
+  // The copies that were tried, the higher number first; one twice where there was one.
+  const std::uint32_t a = candidates_[0].copy, b = candidates_[tried - 1].copy;
+  const std::uint32_t high = std::max(a, b), low = std::min(a, b);
+  std::uint32_t which = 0;
+  if constexpr (!Coder::kDecodes) which = count - 1 - copy - (high > copy ? 1 : 0) - (tried > 1 && low > copy ? 1 : 0);
+  if (count - tried > 1) CodeUnsigned(coder, which_, which);
+  if (which >= count - tried) return false;
+  copy = count - 1 - which;
+  if (high >= copy) --copy;
+  if (tried > 1 && low >= copy) --copy;
   return true;
 }
 

@@ -62,6 +62,8 @@ class CopyCoder {
   void AddCandidate(std::uint32_t level, std::uint32_t vertex, std::uint32_t kind, std::uint32_t copy);
   // Codes the copy of a corner that is not the first of its vertex.
   bool CodeCorner(Coder& coder, std::size_t j, std::size_t k, std::uint32_t& copy);
+  // Codes which of `count` copies it is beside the first `tried` candidates.
+  bool CodeOther(Coder& coder, std::uint32_t count, std::uint32_t tried, std::uint32_t& copy);
   // Notes that triangle `j` has its edges.
   void Remember(std::size_t j);
 
@@ -76,10 +78,10 @@ class CopyCoder {
   std::size_t found_ = 0;
   std::uint32_t across_ = 0;  // edges of the corner that an earlier triangle has
 
-  // By the levels of the two best candidates, how many copies there are, how many of the triangle's other corners have
-  // vertices of several, and across_.
-  std::array<BitModel, kLevels * kLevels * 3 * 3 * 3> first_;
-  std::array<BitModel, kLevels * 3> second_;
+  // By the levels of the two best candidates, whether there are several copies, how many of the triangle's other
+  // corners have vertices of several, and across_.
+  std::array<BitModel, kLevels * kLevels * 2 * 3 * 3> first_;
+  std::array<BitModel, kLevels> second_;  // by the level of the second
   BitModel is_new_;
   UnsignedModels which_;
 };

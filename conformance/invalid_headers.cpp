@@ -37,6 +37,11 @@ void AddIFrameLists(Collection& c) {
   ChangeIFrame(c, "R29", "missing", [](IFrameSyntax& s) { s.order = {0, 1, 2, 4}; });
 }
 
+// Adds streams that break the rules of the scales of components.
+void AddScales(Collection& c) {
+  ChangeIFrame(c, "R76", "scale", [](IFrameSyntax& s) { s.scales = {{kMaxPartExponent + 1, {}}}; });
+}
+
 // Adds streams that break the rules of the copies of vertices.
 void AddCopies(Collection& c) {
   const auto with_copies = [](StreamParts& p, std::uint32_t said, std::vector<Triangle> copies) {
@@ -47,10 +52,10 @@ void AddCopies(Collection& c) {
   };
   c.Change("R75", "few", [&](StreamParts& p) { with_copies(p, 2, {{0, 0, 0}, {1, 0, 0}}); });
   c.Change("R75", "many", [&](StreamParts& p) { with_copies(p, 1, {{0, 0, 0}, {1, 1, 0}}); });
-  c.Change("R75", "which", [&](StreamParts& p) {  // the copy before the first of three
+  c.Change("R75", "which", [&](StreamParts& p) {  // the copy before the first of four
     p.i_frame.loose_triangles = {{0, 2, 1}, {0, 0, 0}, {3, 3, 0}};
     p.header.triangles = 3;
-    with_copies(p, 2, {{0, 0, 0}, {1, 2, 2}, {0, 0, 0xffffffffu}});
+    with_copies(p, 3, {{0, 0, 0}, {1, 2, 3}, {0, 0, 0xffffffffu}});
   });
   c.Change("R29", "copies", [&](StreamParts& p) {  // an order of the vertices, not of their copies
     with_copies(p, 1, {{0, 0, 0}, {1, 0, 0}});
@@ -179,6 +184,7 @@ void AddHeader(Collection& c) {
 void AddIFrame(Collection& c) {
   AddIFrameLists(c);
   AddCopies(c);
+  AddScales(c);
   AddShape(c);
   AddFingerprint(c);
 }

@@ -211,6 +211,30 @@ void AddCopies(std::vector<ValidVector>& vectors) {
   vectors.push_back({"copies_random", "many copies of few vertices, degenerate triangles of copies", RandomCopies()});
 }
 
+// Components of all scales, whose grids begin anywhere.
+Bytes RandomScales() {
+  EncoderSettings settings;
+  settings.quality = 30;
+  settings.harmonics = 40;
+  settings.detail_step = 0.01;
+  StreamParts parts = Split(Encode(Synth(SynthKind::kParts, 150, 1), settings));
+  std::mt19937 random(13);
+  for (std::size_t c = 0; c < parts.i_frame.harmonics.size(); ++c) {
+    PartScale& scale = parts.i_frame.scales.emplace_back();
+    scale.exponent = c == 0 ? kMaxPartExponent : random() % 4 == 0 ? 0 : static_cast<std::uint32_t>(random() % 20);
+    if (scale.exponent == 0) continue;
+    for (std::uint32_t& x : scale.origin) x = random() % (1u << parts.header.position_bits);
+  }
+  Derive(parts);
+  parts.groups = {CodeGroup(parts, 5, 4, [&](std::uint32_t i, FrameSyntax& frame) {
+    for (PlaneValues& plane : frame.planes) {
+      for (std::int32_t& r : plane) r = random() % (8 + 8 * i) == 0 ? static_cast<std::int32_t>(random() % 9) - 4 : 0;
+    }
+  })};
+  parts.frames = 5;
+  return parts.Join();
+}
+
 // Adds streams with groups, references and meshes of all kinds.
 void AddStructures(std::vector<ValidVector>& vectors) {
   vectors.push_back({"small", "spec.md appendix A: no Draco mesh, 3 frames in a pyramid", SmallStream().Join()});
@@ -245,6 +269,11 @@ void AddStructures(std::vector<ValidVector>& vectors) {
   Add(vectors, "crowded", "vertices of more than 32 edges, edges of many triangles", Wave(CrowdedMesh(), 3),
       Harmonics(24), 60);
   AddCopies(vectors);
+  EncoderSettings reaching = Harmonics(40);
+  reaching.reach = 2;
+  reaching.detail_step = 0.003;
+  Add(vectors, "small_part", "a component with a scale", SmallPart(), reaching, 60);
+  vectors.push_back({"scales", "components of all scales", RandomScales()});
   Add(vectors, "stand_still", "frames that repeat, within a group and across groups", StandStill(), pyramids);
   Add(vectors, "cuts", "intra frames within a group", Cuts(), pyramids);
 }

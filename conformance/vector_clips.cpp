@@ -133,6 +133,24 @@ Mesh SplitMesh(const Mesh& mesh, std::uint32_t parts) {
   return out;
 }
 
+Clip SmallPart() {
+  const Clip flag = Synth(SynthKind::kFlag, 80, 6), sphere = Synth(SynthKind::kSphere, 120, 6);
+  Clip clip{{}, {}};
+  const auto join = [&](const Positions& large, const Positions& small) {
+    Positions out;
+    for (const Vec3f& p : large) out.push_back({500 * p[0], 500 * p[1], 500 * p[2]});
+    for (const Vec3f& p : small) out.push_back({p[0] - 3000, p[1] + 700, p[2] + 20});
+    return out;
+  };
+  clip.mesh.positions = join(sphere.mesh.positions, flag.mesh.positions);
+  clip.mesh.triangles = sphere.mesh.triangles;
+  const auto count = static_cast<std::uint32_t>(sphere.mesh.positions.size());
+  for (const Triangle& t : flag.mesh.triangles)
+    clip.mesh.triangles.push_back({t[0] + count, t[1] + count, t[2] + count});
+  for (std::size_t f = 0; f < flag.frames.size(); ++f) clip.frames.push_back(join(sphere.frames[f], flag.frames[f]));
+  return clip;
+}
+
 Clip StandStill() {
   Clip clip = Synth(SynthKind::kFlag, 120, 12);
   clip.frames.insert(clip.frames.begin(), 9, clip.frames.front());

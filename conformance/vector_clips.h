@@ -34,6 +34,9 @@ Mesh CrowdedMesh();
 // their own, where the mesh has colours. All attributes are those of vertices; vertices without triangles stay.
 Mesh SplitMesh(const Mesh& mesh, std::uint32_t parts);
 
+// A sphere of a radius of 500 that turns, and far from it a flag of a size of about 1 that waves.
+Clip SmallPart();
+
 // A clip that repeats its first frame, then moves, then repeats the last frame of the motion.
 Clip StandStill();
 

@@ -124,6 +124,22 @@ bool CodeHarmonics(Coder& coder, const SequenceHeader& header, std::vector<std::
 }
 
 template <class Coder>
+bool CodeScales(Coder& coder, const SequenceHeader& header, std::size_t components, std::vector<PartScale>& scales) {
+  bool has_scales = !scales.empty();
+  CodeFlag(coder, has_scales);
+  if (!has_scales) return true;
+  scales.resize(components);
+  UnsignedModels models;
+  for (PartScale& scale : scales) {
+    CodeUnsigned(coder, models, scale.exponent);
+    if (scale.exponent > kMaxPartExponent || !coder.ok()) return false;
+    if (scale.exponent == 0) continue;
+    for (std::uint32_t& x : scale.origin) coder.Raw(x, header.position_bits);
+  }
+  return true;
+}
+
+template <class Coder>
 bool CodeOrder(Coder& coder, const SequenceHeader& header, std::vector<std::uint32_t>& order) {
   SignedModels step;
   std::uint32_t expected = 0;
@@ -150,6 +166,7 @@ const char* CodeSide(Coder& coder, const SequenceHeader& header, IFrameSyntax& s
   if (!CodeLooseVertices(coder, header, s)) return "loose vertices";
   if (!CodeLooseTriangles(coder, header, s.loose_triangles)) return "loose triangles";
   if (!CodeHarmonics(coder, header, s.harmonics)) return "harmonics per component";
+  if (!CodeScales(coder, header, s.harmonics.size(), s.scales)) return "scales of components";
   UnsignedModels samples;
   CodeUnsigned(coder, samples, s.handles_per_harmonic);
   for (float& f : s.fingerprint) CodeFloat(coder, f);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "format/grid_position.h"
+#include "format/part_scale.h"
 #include "format/range_coder.h"
 #include "format/recorded_bins.h"
 #include "format/sequence_header.h"
@@ -43,6 +44,7 @@ struct IFrameSyntax {
   std::vector<LooseVertex> loose_vertices;
   std::vector<Triangle> loose_triangles;   // vertices of triangles that Draco drops
   std::vector<std::uint32_t> harmonics;    // per component, each at least 1
+  std::vector<PartScale> scales;           // per component; empty when all are the mesh's
   std::uint32_t handles_per_harmonic = 0;  // 0: every vertex is a handle (spec.md 6.4.4)
   std::array<float, 2> fingerprint = {};   // of the harmonics (spec.md 6.6)
   // Per copy of a vertex its index in the input; empty when the input's order is not kept.

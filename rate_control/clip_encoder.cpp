@@ -14,6 +14,7 @@
 #include "codec/encode/input_check.h"
 #include "geometry/coincident_vertices.h"
 #include "rate_control/measured_encoding.h"
+#include "rate_control/part_reach.h"
 #include "rate_control/reference_shape.h"
 #include "rate_control/target_search.h"
 #include "rate_control/trial.h"
@@ -77,8 +78,8 @@ class ClipEncoder {
     settings.progress = ProgressOf(encoding_, ++trials_);
     return settings;
   }
-  // Finds the vertices of each segment that coincide in all of its frames.
-  Status FindJoined();
+  // Finds the vertices of each segment that coincide in all of its frames, and how far small parts move.
+  Status ReadAhead();
   // Chooses the shapes of all segments. `whole` becomes the encoding of the clip, if it has one segment.
   Status ChooseShapes(const EncoderSettings& settings, std::optional<ChosenShape>& whole);
   // Chooses settings_ and, with the settings that the search begins with, shapes_.
@@ -92,19 +93,19 @@ class ClipEncoder {
   const ClipEncoding& encoding_;
   const std::uint32_t rounds_;  // of fitting a shape
   EncoderSettings settings_;
-  std::vector<std::optional<Mesh>> shapes_;         // of each segment; empty: its first frame
-  std::vector<std::vector<std::uint32_t>> joined_;  // of each segment: the lowest vertex that each is joined with
+  std::vector<std::optional<Mesh>> shapes_;  // of each segment; empty: its first frame
+  std::vector<LookAhead> known_;             // of each segment
   std::uint32_t trials_ = 0;
 };
 
-Status ClipEncoder::FindJoined() {
-  if (encoding_.part || !settings_.join.value_or(true)) return Status::Ok();
+Status ClipEncoder::ReadAhead() {
+  if (encoding_.part) return Status::Ok();
   for (bool end = false; !end;) {
-    SegmentReader segment(clip_, static_cast<std::uint32_t>(joined_.size()));
-    SAC_RETURN_IF_ERROR(FindJoinedVertices(segment, joined_.emplace_back()));
+    SegmentReader segment(clip_, static_cast<std::uint32_t>(known_.size()));
+    SAC_RETURN_IF_ERROR(sac::ReadAhead(segment, settings_, known_.emplace_back()));
     SAC_RETURN_IF_ERROR(clip_.NextSegment(end));
   }
-  return joined_.size() > 1 ? clip_.Rewind() : Status::Ok();
+  return known_.size() > 1 ? clip_.Rewind() : Status::Ok();
 }
 
 Status ClipEncoder::ChooseShapes(const EncoderSettings& settings, std::optional<ChosenShape>& whole) {
@@ -117,8 +118,7 @@ Status ClipEncoder::ChooseShapes(const EncoderSettings& settings, std::optional<
     SegmentReader segment(clip_, s);
     SAC_RETURN_IF_ERROR(Named(segment.name_of(0), CheckMesh(segment.mesh(), settings.limits)));
     ChosenShape chosen;
-    status = sac::ChooseShape(segment, s < joined_.size() ? joined_[s] : std::vector<std::uint32_t>(), rounds_,
-                              next_settings, chosen);
+    status = sac::ChooseShape(segment, s < known_.size() ? known_[s] : LookAhead{}, rounds_, next_settings, chosen);
     shapes_.push_back(chosen.mesh);
     if (s == 0) {
       whole = std::move(chosen);
@@ -143,7 +143,7 @@ Status ClipEncoder::Search() {
       encoded = std::move(whole->encoded);
     } else {
       SAC_RETURN_IF_ERROR(
-          EncodeAndMeasure(clip_, ForTrial(trial.settings), {shapes_, joined_, true, {}, nullptr}, encoded));
+          EncodeAndMeasure(clip_, ForTrial(trial.settings), {shapes_, known_, true, {}, nullptr}, encoded));
     }
     trial.Take(encoded);
     return Status::Ok();
@@ -162,7 +162,7 @@ Status ClipEncoder::Encode(const ByteSink& sink, EncodedClip& result) {
   settings_.progress = ProgressOf(encoding_, 0);
   return EncodeAndMeasure(
       clip_, settings_,
-      {shapes_, joined_, encoding_.measure || trials_ > 0, sink, nullptr, encoding_.part ? &*encoding_.part : nullptr},
+      {shapes_, known_, encoding_.measure || trials_ > 0, sink, nullptr, encoding_.part ? &*encoding_.part : nullptr},
       result);
 }
 
@@ -178,7 +178,7 @@ Status ClipEncoder::EncodeFromChosenShapes(const ByteSink& sink, EncodedClip& re
 }
 
 Status ClipEncoder::Run(const ByteSink& sink, EncodedClip& result) {
-  SAC_RETURN_IF_ERROR(FindJoined());
+  SAC_RETURN_IF_ERROR(ReadAhead());
   if (encoding_.targets.any()) {
     SAC_RETURN_IF_ERROR(Search());
     SAC_RETURN_IF_ERROR(Encode(sink, result));
@@ -196,18 +196,21 @@ Status ClipEncoder::Run(const ByteSink& sink, EncodedClip& result) {
 
 }  // namespace
 
-Status FindJoinedVertices(ClipReader& clip, std::vector<std::uint32_t>& lowest) {
+Status ReadAhead(ClipReader& clip, const EncoderSettings& settings, LookAhead& known) {
   CoincidentVertices coincident;
   const Positions& first = clip.mesh().positions;
-  if (CheckFinite(first).ok()) coincident.Add(first);
-  if (coincident.any()) SAC_RETURN_IF_ERROR(clip.Rewind());
+  const bool is_good = CheckMesh(clip.mesh(), settings.limits).ok() && CheckFinite(first).ok();
+  if (is_good && settings.join.value_or(true)) coincident.Add(first);
+  PartReach parts(is_good ? clip.mesh() : Mesh{}, coincident.Lowest());
+  if (coincident.any() || parts.any()) SAC_RETURN_IF_ERROR(clip.Rewind());
   Positions frame;
   // What is wrong with a frame is said when it is to be coded, with the frames before it.
-  for (bool end = false; coincident.any() && clip.Next(frame, end).ok() && !end;) {
+  for (bool end = false; (coincident.any() || parts.any()) && clip.Next(frame, end).ok() && !end;) {
     if (frame.size() != first.size() || !CheckFinite(frame).ok()) break;
-    coincident.Add(frame);
+    if (coincident.any()) coincident.Add(frame);
+    if (parts.any()) parts.Add(frame);
   }
-  lowest = coincident.Lowest();
+  known = {coincident.Lowest(), settings.reach ? std::vector<float>() : parts.Value()};
   return Status::Ok();
 }
 

@@ -33,9 +33,9 @@ class Encoding {
     const bool given = result_.segments < task_.shapes.size() && task_.shapes[result_.segments];
     return given ? *task_.shapes[result_.segments] : clip_.mesh();
   }
-  // Which vertices of that segment are joined.
-  std::span<const std::uint32_t> Joined() const {
-    return result_.segments < task_.joined.size() ? task_.joined[result_.segments] : std::span<const std::uint32_t>();
+  // What is known of that segment.
+  const LookAhead& Known() const {
+    return result_.segments < task_.known.size() ? task_.known[result_.segments] : nothing_;
   }
   Status Create();
   // Gives out and measures what has been coded.
@@ -49,6 +49,7 @@ class Encoding {
   const EncoderSettings& settings_;
   const EncodingTask& task_;
   EncodedClip& result_;
+  const LookAhead nothing_;
   bool measure_;
   StreamMeasurement measurement_;
   std::unique_ptr<Encoder> encoder_;
@@ -95,7 +96,7 @@ Status Encoding::EncodeSegment() {
 Status Encoding::BeginNextSegment(bool& end) {
   SAC_RETURN_IF_ERROR(clip_.NextSegment(end));
   if (end) return Status::Ok();
-  const Status begun = encoder_->BeginSegment(Shape(), Joined());
+  const Status begun = encoder_->BeginSegment(Shape(), Known().lowest, Known().reach);
   if (begun.ok()) return Take();
   return encoder_->fault() ? Fail(begun) : Named(clip_.name_of(clip_.first_frame()), begun);
 }
@@ -104,7 +105,7 @@ Status Encoding::Create() {
   if (task_.part == nullptr) {
     EncoderSettings own = settings_;
     own.join = false;  // but for those of the task
-    return Encoder::Create(Shape(), own, encoder_, Joined());
+    return Encoder::Create(Shape(), own, encoder_, Known().lowest, Known().reach);
   }
   const std::uint32_t first = task_.part->first_frame;
   SAC_RETURN_IF_ERROR(Encoder::CreateFrom(task_.part->start, settings_, encoder_));

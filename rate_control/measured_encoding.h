@@ -28,10 +28,9 @@ Status Named(const std::string& name, const Status& status);
 struct EncodingTask {
   // The mesh of each segment's I-frame; the clip's own where there is none.
   std::span<const std::optional<Mesh>> shapes = {};
-  // For each segment the lowest vertex that each of its vertices is joined with; empty where none is.
-  std::span<const std::vector<std::uint32_t>> joined = {};
-  bool measure = true;  // decodes the stream while it is encoded and measures it against the clip
-  ByteSink sink;        // gets the bytes; it may be empty
+  std::span<const LookAhead> known = {};  // of each segment
+  bool measure = true;                    // decodes the stream while it is encoded and measures it against the clip
+  ByteSink sink;                          // gets the bytes; it may be empty
   // With `measure`: gets the decoded shape and all frames of a clip that has one segment; null: nobody does.
   ShapeResidual* residual = nullptr;
   const ClipPart* part = nullptr;  // null: the clip begins with its first frame and has a start of its own

@@ -58,13 +58,13 @@ double Cost(const EncodedClip& encoded) {
 }
 
 // Encodes all frames of `clip` from shape.mesh.
-Status EncodeFrom(ClipReader& clip, const std::vector<std::uint32_t>& joined, const EncoderSettings& settings,
-                  ShapeResidual& residual, ChosenShape& shape) {
+Status EncodeFrom(ClipReader& clip, const LookAhead& known, const EncoderSettings& settings, ShapeResidual& residual,
+                  ChosenShape& shape) {
   const auto hold = [&shape](std::span<const std::uint8_t> bytes) {
     shape.stream.Add(bytes);
     return Status::Ok();
   };
-  return EncodeAndMeasure(clip, settings, {std::span(&shape.mesh, 1), std::span(&joined, 1), true, hold, &residual},
+  return EncodeAndMeasure(clip, settings, {std::span(&shape.mesh, 1), std::span(&known, 1), true, hold, &residual},
                           shape.encoded);
 }
 
@@ -77,12 +77,12 @@ std::uint32_t RoundsOf(const ClipEncoding& encoding) {
   return encoding.reference_rounds.value_or(encoding.measure || encoding.targets.any() ? kReferenceRounds : 0);
 }
 
-Status ChooseShape(ClipReader& clip, const std::vector<std::uint32_t>& joined, std::uint32_t rounds,
+Status ChooseShape(ClipReader& clip, const LookAhead& known, std::uint32_t rounds,
                    const std::function<EncoderSettings()>& settings_of_next, ChosenShape& chosen) {
   const Positions& first = clip.mesh().positions;
   ShapeResidual of_clip(clip.mesh().triangles, first.size(), kThinning);
   chosen = {};
-  SAC_RETURN_IF_ERROR(EncodeFrom(clip, joined, settings_of_next(), of_clip, chosen));
+  SAC_RETURN_IF_ERROR(EncodeFrom(clip, known, settings_of_next(), of_clip, chosen));
   if (chosen.encoded.frames < kLeastFrames) return Status::Ok();
 
   ThinnedClip thinned(clip);
@@ -95,7 +95,7 @@ Status ChooseShape(ClipReader& clip, const std::vector<std::uint32_t>& joined, s
     fitted.mesh->positions = residual->Corrected(1, first);
     residual = &of_thinned;
     ClipReader& frames = is_last ? clip : static_cast<ClipReader&>(thinned);
-    const Status status = EncodeFrom(frames, joined, settings_of_next(), of_thinned, fitted);
+    const Status status = EncodeFrom(frames, known, settings_of_next(), of_thinned, fitted);
     if (status.code() == StatusCode::kCancelled) return status;
     if (!status.ok()) break;
     if (is_last && Cost(fitted.encoded) < Cost(chosen.encoded)) chosen = std::move(fitted);

@@ -4,9 +4,9 @@
 #include <cstdint>
 #include <functional>
 #include <optional>
-#include <vector>
 
 #include "rate_control/held_stream.h"
+#include "rate_control/measured_encoding.h"
 #include "sac/clip.h"
 #include "sac/clip_encoder.h"
 #include "sac/encoder.h"
@@ -31,13 +31,13 @@ std::uint32_t RoundsOf(const ClipEncoding& encoding);
 // every third frame, since they only have to say where the shape is wrong. Of the two whole encodings that one is
 // chosen which costs less: bytes * KG^0.6 * STED^0.4.
 //
-// `joined` has for each vertex the lowest that it is joined with (Encoder::Create).
+// `known` is of the clip's frames.
 //
 // `settings_of_next` returns the settings of the next encoding, which are always the same but for the progress
 // callback. An encoding that fails from a fitted shape ends the search for one. The result is the status of the
 // encoding that is chosen, with the errors of EncodeAndMeasure(); chosen.stream holds the frames before the one at
 // fault then.
-Status ChooseShape(ClipReader& clip, const std::vector<std::uint32_t>& joined, std::uint32_t rounds,
+Status ChooseShape(ClipReader& clip, const LookAhead& known, std::uint32_t rounds,
                    const std::function<EncoderSettings()>& settings_of_next, ChosenShape& chosen);
 
 }  // namespace sac

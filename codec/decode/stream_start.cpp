@@ -136,7 +136,7 @@ Status StreamStart::DecodeMesh(const SequenceHeader& header, std::span<const std
   out.normals = std::move(decoded.normals);
   out.normal_triangles = std::move(decoded.normal_triangles);
   out.colors = std::move(decoded.colors);
-  ToPositions(ShapePositions(header, decoded.mesh.grid), out.positions);
+  ToPositions(ShapePositions(header, decoded.mesh), out.positions);
   SpreadToCopies(decoded.mesh.vertex_of_copy, out.positions);
   mesh_ = std::move(out);
   order_ = std::exchange(syntax.order, {});

@@ -73,6 +73,7 @@ void sac_encoder_settings_init(sac_encoder_settings* settings) {
   settings->quality = defaults.quality;
   settings->max_error = settings->target_kg = settings->target_sted = settings->target_bpvf = kChosen;
   settings->motion_step = settings->displacement_step = settings->detail_step = settings->position_bits = kChosen;
+  settings->reach = kChosen;
   settings->level_growth = defaults.level_growth;
   settings->handles_per_harmonic = defaults.handles_per_harmonic;
   settings->group = defaults.group;

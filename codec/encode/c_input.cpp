@@ -61,6 +61,7 @@ EncoderSettings ToEncoderSettings(const sac_encoder_settings& s) {
   to.frame_rate_numerator = s.frame_rate_numerator;
   to.frame_rate_denominator = s.frame_rate_denominator;
   to.keep_order = s.keep_order != 0;
+  to.reach = Given(s.reach);
   if (s.join >= 0) to.join = s.join != 0;
   to.index = s.index != 0;
   to.repeat_start = s.repeat_start;

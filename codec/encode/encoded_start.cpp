@@ -16,6 +16,7 @@
 #include "codec/encode/i_frame_encoder.h"
 #include "codec/encode/input_check.h"
 #include "codec/encode/joined_mesh.h"
+#include "codec/encode/part_scales.h"
 #include "codec/encode/position_grid.h"
 #include "codec/encode/quality.h"
 #include "format/bytes.h"
@@ -29,38 +30,27 @@ namespace {
 // The harmonics of a larger patch compress better but take a decoder longer to compute. Large meshes get small patches.
 constexpr std::uint32_t kLargePatch = 200, kSmallPatch = 64, kLargePatchVertices = 50'000;
 
-double RmsRadius(const Positions& positions) {
-  std::array<double, 3> sum{};
-  double squares = 0;
-  for (const Vec3f& p : positions) {
-    for (std::size_t a = 0; a < 3; ++a) sum[a] += static_cast<double>(p[a]);
-  }
-  const auto n = static_cast<double>(positions.size());
-  for (const Vec3f& p : positions) {
-    for (std::size_t a = 0; a < 3; ++a) {
-      const double d = static_cast<double>(p[a]) - sum[a] / n;
-      squares += d * d;
-    }
-  }
-  // A single point has no size; its distance from the origin stands in for the scale of its motion.
-  const double radius = std::sqrt(squares / n), largest = LargestCoordinate(positions);
-  if (radius > 1e-7 * largest) return radius;
-  return largest > 0 ? largest : 1;
-}
-
 // Shares `wanted` harmonics among the components in proportion to their areas, which by Weyl's law bounds the
-// eigenvalues equally. Each component gets at least one, for its translation.
+// eigenvalues equally. Each component gets at least one, for its translation. A component with a finer scale gets,
+// beside those, what it would get if it were as much larger.
 std::vector<std::uint32_t> ShareHarmonics(const DecodedMesh& mesh, std::uint32_t wanted) {
   PositionMatrix positions(static_cast<Eigen::Index>(mesh.grid.size()), 3);
-  for (std::size_t v = 0; v < mesh.grid.size(); ++v) {
-    positions.row(static_cast<Eigen::Index>(v)) << mesh.grid[v][0], mesh.grid[v][1], mesh.grid[v][2];
+  const auto factor = [&](std::size_t c) { return mesh.scales.empty() ? 1.0 : mesh.scales[c].factor(); };
+  for (std::size_t c = 0; c < mesh.components.size(); ++c) {
+    const Component& component = mesh.components[c];
+    for (std::uint32_t v = component.first; v < component.first + component.count; ++v) {
+      positions.row(v) << mesh.grid[v][0], mesh.grid[v][1], mesh.grid[v][2];
+      positions.row(v) *= factor(c);
+    }
   }
   const Eigen::VectorXd masses = VertexMasses(positions, mesh.triangles);
   const auto components = static_cast<double>(mesh.components.size());
   const double spare = std::max(0.0, static_cast<double>(wanted) - components);
   std::vector<std::uint32_t> counts;
-  for (const Component& c : mesh.components) {
-    const double share = masses.segment(c.first, c.count).sum();
+  for (std::size_t i = 0; i < mesh.components.size(); ++i) {
+    const Component& c = mesh.components[i];
+    const double area = masses.segment(c.first, c.count).sum() / (factor(i) * factor(i));
+    const double share = factor(i) < 1 ? area / (1 + area) : area;
     counts.push_back(std::min(c.count, 1 + static_cast<std::uint32_t>(std::floor(spare * share + 1e-9))));
   }
   return counts;
@@ -138,13 +128,27 @@ Status FinishIFrame(DecodedMesh mesh, const Limits& limits, IFrameSyntax& syntax
   return Status::Ok();
 }
 
+// The reach of each joined vertex, where it is known.
+std::vector<float> ReachOf(const JoinedMesh& input, std::span<const float> reach, const EncoderSettings& settings) {
+  std::vector<float> joined;
+  if (reach.empty() && !settings.reach) return joined;
+  joined.resize(input.mesh.positions.size(), reach.empty() ? static_cast<float>(*settings.reach) : 0);
+  for (std::size_t i = 0; i < reach.size(); ++i) {
+    float& of_vertex = joined[input.vertex_of_author[i]];
+    of_vertex = std::max(of_vertex, reach[i]);
+  }
+  return joined;
+}
+
 bool HasAttributes(const JoinedMesh& input) {
   return !input.mesh.uvs.empty() || !input.mesh.normals.empty() || !input.colors.empty();
 }
 
 // EncodeStart() with the fraction `share` of the harmonics that the quality stands for. Becomes kUnsupported, and
 // nothing is coded, when attributes would be lost because vertices are joined.
-Status EncodeStart(const JoinedMesh& input, const EncoderSettings& settings, double share, EncodedStart& start) {
+// `reach` is that of the joined vertices; empty where it is not known.
+Status EncodeStart(const JoinedMesh& input, std::span<const float> reach, const EncoderSettings& settings, double share,
+                   EncodedStart& start) {
   const Mesh& first = input.mesh;
   start = {};
   SAC_RETURN_IF_ERROR(Progress(settings));
@@ -156,16 +160,21 @@ Status EncodeStart(const JoinedMesh& input, const EncoderSettings& settings, dou
   start.max_error = settings.max_error.value_or(0);
   start.groups = {settings.group, settings.pyramid, settings.base_levels};
 
+  // A bound on the error is one for all parts.
+  MeshParts parts;
+  if (!reach.empty() && !settings.max_error) {
+    parts = FindParts(first, rms, static_cast<double>(start.header.displacement_step), reach);
+  }
   PositionTargets targets;
   SAC_RETURN_IF_ERROR(ChooseGrid(first, settings.position_bits.value_or(defaults.position_bits), !settings.max_error,
-                                 start.header, targets));
+                                 start.header, parts, targets));
   IFrameSyntax syntax;
   DecodedIFrame decoded;
   SAC_RETURN_IF_ERROR(EncodeIFrameMesh(input, targets, start.header, syntax, decoded, start.order));
   if (input.is_joined() && syntax.mesh.empty() && HasAttributes(input)) {
     return Status::Unsupported("attributes of joined vertices");
   }
-
+  syntax.scales = decoded.mesh.scales = ScalesOf(parts, input, decoded.mesh, start.order);
   syntax.harmonics = ShareHarmonics(
       decoded.mesh, settings.harmonics.value_or(static_cast<std::uint32_t>(std::lround(share * defaults.harmonics))));
   syntax.handles_per_harmonic = HandlesPerHarmonic(settings.handles_per_harmonic, syntax.harmonics);
@@ -219,11 +228,14 @@ Status ReadEncoderPart(std::span<const std::uint8_t> bytes, EncodedStart& start)
 }  // namespace
 
 Status EncodeStart(const Mesh& first, const EncoderSettings& settings, EncodedStart& start,
-                   std::span<const std::uint32_t> lowest) {
+                   std::span<const std::uint32_t> lowest, std::span<const float> reach) {
   SAC_RETURN_IF_ERROR(CheckSettings(settings));
   SAC_RETURN_IF_ERROR(CheckMesh(first, settings.limits));
   SAC_RETURN_IF_ERROR(CheckFinite(first.positions));
   SAC_RETURN_IF_ERROR(CheckJoining(lowest, first.positions.size()));
+  if (!reach.empty() && reach.size() != first.positions.size()) {
+    return Status::InvalidArgument("the reach of some vertices only");
+  }
   CoincidentVertices coincident;
   if (lowest.empty() && settings.join.value_or(false)) coincident.Add(first.positions);
   const std::vector<std::uint32_t> found = coincident.Lowest();
@@ -231,10 +243,11 @@ Status EncodeStart(const Mesh& first, const EncoderSettings& settings, EncodedSt
   // Decoders allow less work for a small I-frame, so a large mesh with a small I-frame may get fewer harmonics.
   constexpr double kFewer = 0.9, kFewest = 0.1;
   for (double share = 1;; share *= kFewer) {
-    Status status = Contain([&] { return EncodeStart(input, settings, share, start); });
+    Status status =
+        Contain([&] { return EncodeStart(input, ReachOf(input, reach, settings), settings, share, start); });
     if (status.code() == StatusCode::kUnsupported && input.is_joined()) {
       input = JoinVertices(first, {});
-      status = Contain([&] { return EncodeStart(input, settings, share, start); });
+      status = Contain([&] { return EncodeStart(input, ReachOf(input, reach, settings), settings, share, start); });
     }
     if (status.code() != StatusCode::kLimit || settings.harmonics || share < kFewest) return status;
   }

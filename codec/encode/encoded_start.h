@@ -38,11 +38,12 @@ struct EncodedStart {
 // from, which the first frame is or is near to. When decoders would refuse the number of harmonics that a quality
 // stands for, fewer are tried. settings.progress is called with 0 between the steps. `lowest` has for each vertex the
 // lowest that it is joined with; where it is empty, settings.join says whether those that coincide in `mesh` are.
+// `reach` has what settings.reach stands for elsewhere, for each vertex.
 //
 // Returns kInvalidArgument for settings out of range and for a mesh that cannot be coded, kLimit when decoders with
 // settings.limits would refuse the stream or when memory is short, and kCancelled.
 Status EncodeStart(const Mesh& mesh, const EncoderSettings& settings, EncodedStart& start,
-                   std::span<const std::uint32_t> lowest = {});
+                   std::span<const std::uint32_t> lowest = {}, std::span<const float> reach = {});
 
 // Returns `start` as bytes: first the bytes that the stream begins with (magic, header packet, I-frame packet), then
 // the members that decoders do not need: the error bound as a little-endian f64, the order as one u32 per index, the

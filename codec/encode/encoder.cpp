@@ -30,10 +30,10 @@ Encoder::Encoder(std::unique_ptr<Impl> impl) : impl_(std::move(impl)) {}
 Encoder::~Encoder() = default;
 
 Status Encoder::Create(const Mesh& mesh, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder,
-                       std::span<const std::uint32_t> lowest) {
+                       std::span<const std::uint32_t> lowest, std::span<const float> reach) {
   const auto create = [&] {
     EncodedStart start;
-    SAC_RETURN_IF_ERROR(EncodeStart(mesh, settings, start, lowest));
+    SAC_RETURN_IF_ERROR(EncodeStart(mesh, settings, start, lowest, reach));
     encoder.reset(new Encoder(std::make_unique<Impl>(std::move(start), settings)));
     return Status::Ok();
   };
@@ -61,10 +61,10 @@ Status Encoder::Send(std::span<const Vec3f> positions) {
   return impl_->Do([&](StreamEncoder& stream) { return stream.Send(positions); });
 }
 
-Status Encoder::BeginSegment(const Mesh& mesh, std::span<const std::uint32_t> lowest) {
+Status Encoder::BeginSegment(const Mesh& mesh, std::span<const std::uint32_t> lowest, std::span<const float> reach) {
   const auto begin = [&] {
     EncodedStart start;
-    SAC_RETURN_IF_ERROR(EncodeStart(mesh, impl_->settings, start, lowest));
+    SAC_RETURN_IF_ERROR(EncodeStart(mesh, impl_->settings, start, lowest, reach));
     return impl_->Do([&](StreamEncoder& stream) { return stream.BeginSegment(std::move(start)); });
   };
   return Contain(begin);

@@ -57,6 +57,7 @@ Status CheckSettings(const EncoderSettings& s) {
   }
   if (!positive(s.motion_step)) return Status::InvalidArgument("the motion step must be positive");
   if (!positive(s.displacement_step)) return Status::InvalidArgument("the displacement step must be positive");
+  if (s.reach && !(*s.reach >= 0)) return Status::InvalidArgument("the reach must not be negative");
   if (s.detail_step && !(std::isfinite(*s.detail_step) && *s.detail_step >= 0)) {
     return Status::InvalidArgument("the detail step must not be negative");
   }

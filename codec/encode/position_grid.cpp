@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <limits>
+#include <vector>
 
 #include "codec/encode/edge_length.h"
 #include "geometry/bounding_box.h"
@@ -19,9 +22,38 @@ constexpr int kGridBits = 5;
 constexpr double kStepByEdges = 0.8;
 constexpr double kLongestStep = 0.5;  // largest growing share of a step, in edge lengths
 
+// Chooses where the grid of each part begins, on a grid whose cells the positions `cells` are in and whose last place
+// is `last`, and brings the positions onto the grids of their parts.
+void PlaceParts(double last, MeshParts& parts, std::vector<std::array<double, 3>>& cells) {
+  if (parts.scales.empty()) return;
+  constexpr double kFar = std::numeric_limits<double>::max();
+  std::vector<std::array<double, 3>> low(parts.scales.size(), {kFar, kFar, kFar}), high(parts.scales.size());
+  for (std::size_t v = 0; v < cells.size(); ++v) {
+    const std::uint32_t c = parts.of_vertex[v];
+    for (std::size_t a = 0; a < 3; ++a) {
+      low[c][a] = std::min(low[c][a], cells[v][a]);
+      high[c][a] = std::max(high[c][a], cells[v][a]);
+    }
+  }
+  for (std::size_t c = 0; c < parts.scales.size(); ++c) {
+    PartScale& scale = parts.scales[c];
+    double needed = 0;
+    for (std::size_t a = 0; a < 3; ++a) needed = std::max(needed, high[c][a] - std::floor(low[c][a]));
+    while (scale.exponent > 0 && std::ldexp(needed, static_cast<int>(scale.exponent)) > last) --scale.exponent;
+    for (std::size_t a = 0; scale.exponent > 0 && a < 3; ++a) {
+      scale.origin[a] = static_cast<std::uint32_t>(std::floor(low[c][a]));
+    }
+  }
+  for (std::size_t v = 0; v < cells.size(); ++v) {
+    const PartScale& scale = parts.scales[parts.of_vertex[v]];
+    for (std::size_t a = 0; a < 3; ++a) cells[v][a] = (cells[v][a] - scale.origin[a]) / scale.factor();
+  }
+}
+
 }  // namespace
 
-Status ChooseGrid(const Mesh& mesh, double bits, bool by_edges, SequenceHeader& header, PositionTargets& targets) {
+Status ChooseGrid(const Mesh& mesh, double bits, bool by_edges, SequenceHeader& header, MeshParts& parts,
+                  PositionTargets& targets) {
   const Box box = BoundingBox(mesh.positions);
   const std::array<double, 3>&low = box.low, size = box.size();
   const double extent = std::max({size[0], size[1], size[2]});
@@ -38,6 +70,7 @@ Status ChooseGrid(const Mesh& mesh, double bits, bool by_edges, SequenceHeader& 
       cells[a] = std::clamp((static_cast<double>(p[a]) - low[a]) / static_cast<double>(header.cell), 0.0, last);
     }
   }
+  PlaceParts(last, parts, targets.cells);
   const double step = std::exp2(header.position_bits - bits);
   const double edge = by_edges ? MedianEdge<double>(targets.cells, mesh.triangles) : 0;
   // Steps that are about as long as the edges do not follow them.

@@ -39,7 +39,7 @@ def _differences(clip: Clip, expected: dict) -> list[str]:
         return wrong
     for frame, vertex, *position in expected["positions"]:
         away = np.abs(clip.frames[frame][vertex] - position)
-        if not np.all(away <= tolerance(clip.segment_of(frame), np.array(position))):
+        if not np.all(away <= tolerance(clip.segment_of(frame), np.array([vertex]), np.array([position]))):
             wrong.append(f"frame {frame}, vertex {vertex} is {away.max():g} away")
     return wrong
 

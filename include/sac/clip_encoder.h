@@ -84,10 +84,16 @@ struct EncodedClip {
   double bpvf() const { return 8 * static_cast<double>(bytes) / static_cast<double>(positions); }
 };
 
-// Finds the vertices of a clip's first segment that coincide in all of its frames, as far as these can be read and
-// coded. `lowest` gets what Encoder::Create() takes: of each vertex the lowest that it coincides with; nothing where
-// none do. The clip is read once where vertices coincide in its mesh, and not at all otherwise. The errors of Rewind().
-Status FindJoinedVertices(ClipReader& clip, std::vector<std::uint32_t>& lowest);
+// What is known of the frames of a segment before they are coded, as Encoder::Create() takes it; empty
+// where there is nothing to know.
+struct LookAhead {
+  std::vector<std::uint32_t> lowest;  // of each vertex the lowest that it coincides with in all of them
+  std::vector<float> reach;           // of each vertex, as EncoderSettings::reach
+};
+
+// Reads a clip's first segment as far as there is something to know of its frames: where vertices of its mesh coincide,
+// and where parts are much smaller than the whole. Frames that cannot be read or coded end it. The errors of Rewind().
+Status ReadAhead(ClipReader& clip, const EncoderSettings& settings, LookAhead& known);
 
 // Encodes a clip, each of its meshes as a segment, decodes the stream again as it comes and measures it against the
 // clip, which has to be at its first segment and is rewound before each encoding. Without a frame rate in the settings

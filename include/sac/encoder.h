@@ -50,6 +50,11 @@ struct EncoderSettings {
   // the input has. True: an Encoder joins those of the mesh that it is created with, and frames in which they part are
   // refused. EncodeClip() joins those that coincide in all frames, unless this is false.
   std::optional<bool> join;
+  // How far a vertex moves at most from its place in the mesh, the rigid motion of the whole taken away; model units.
+  // Where it is known, components much smaller than the mesh are coded finer, so that their error is in proportion to
+  // their own size; frames that go twice as far may be refused. EncodeClip() measures it where there are such. Not with
+  // a bound on the error.
+  std::optional<double> reach;
   bool index = true;  // end streams of several groups with where they begin
   // Header and I-frame come again before every so many groups, for those who join in the middle; 0: never.
   std::uint32_t repeat_start = 0;
@@ -103,9 +108,10 @@ class Encoder {
   // kInvalidArgument for settings out of range, a mesh without vertices, a
   // triangle of a missing vertex, attributes that do not fit the mesh or coordinates that are not finite.
   // `lowest` says which vertices are joined (EncoderSettings::join), whatever the settings do: for each the lowest that
-  // it coincides with in all frames, which may be itself. Those without triangles are not.
+  // it coincides with in all frames, which may be itself. Those without triangles are not. `reach` is that of the
+  // settings for each vertex by itself.
   static Status Create(const Mesh& mesh, const EncoderSettings& settings, std::unique_ptr<Encoder>& encoder,
-                       std::span<const std::uint32_t> lowest = {});
+                       std::span<const std::uint32_t> lowest = {}, std::span<const float> reach = {});
   // An encoder that goes on from a start, which start() of another gave: it codes any run of frames of that clip as a
   // stream of its own. What the start holds is not taken from `settings`: all that concerns the shape, steps, the
   // structure of groups, frame rate and offset. Where the run begins with a multiple of group_frames(), its groups have
@@ -129,7 +135,7 @@ class Encoder {
   // frames that are sent next are coded as in a stream of their own. Decoders tell that the mesh has changed. Status as
   // of Create(), and as of Send() for the frames before; after a failure of Create()'s kind the encoder goes on with
   // the mesh before.
-  Status BeginSegment(const Mesh& mesh, std::span<const std::uint32_t> lowest = {});
+  Status BeginSegment(const Mesh& mesh, std::span<const std::uint32_t> lowest = {}, std::span<const float> reach = {});
   // Codes the groups that are full but wait for others to be coded at the same time. Status as of Send() for the frames
   // before.
   Status Flush();

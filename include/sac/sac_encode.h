@@ -97,6 +97,11 @@ typedef struct sac_encoder_settings {
    * SAC_INVALID_ARGUMENT when it runs no job. */
   sac_run_jobs run_jobs;
   void* run_jobs_user;
+  /* How far a vertex moves at most from its place in the mesh, the rigid motion of the whole taken away; model units.
+   * Where it is known, components much smaller than the mesh are coded finer, so that their error is in proportion to
+   * their own size; frames that go twice as far may be refused. NaN: sac_encode_clip() measures it, sac_encoder_open()
+   * does without. Not with max_error. */
+  double reach;
 } sac_encoder_settings;
 
 /* The mesh of a clip; set all of it to 0 before. Its positions are the first frame's, or any near them for

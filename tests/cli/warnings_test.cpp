@@ -173,7 +173,10 @@ TEST_F(WarningsTest, PartsThatAreParkedFarAway) {
     frames[f].insert(frames[f].end(), {{1e5F, 0, 0}, {100001, 0, 0}, {1e5F, 1, 0}});
   }
   WriteCache("far.pc2", frames);
-  const std::string told = Told({"encode", "far.obj", "far.pc2", "-o", "far.sac", "--harmonics", "30"});
+  std::vector<std::string> encode{"encode", "far.obj", "far.pc2", "-o", "far.sac", "--harmonics", "30"};
+  EXPECT_EQ(Told(encode).find(" its own size"), std::string::npos) << "each is coded by its size";
+  encode.insert(encode.end(), {"--displacement-step", "5"});
+  const std::string told = Told(encode);
   EXPECT_NE(told.find("sac: warning: far.obj: the part of "), std::string::npos) << told;
   EXPECT_NE(told.find(" its own size (KG "), std::string::npos) << told;
 }

@@ -62,7 +62,14 @@ void MutateHeader(SequenceHeader& h, std::mt19937& random) {
 void MutateIFrameSyntax(IFrameSyntax& s, const SequenceHeader& h, std::mt19937& random) {
   const std::uint32_t grid = 1u << h.position_bits;
   const auto corner = [&] { return static_cast<std::uint32_t>(random() % h.vertices); };
-  switch (random() % 6) {
+  switch (random() % 7) {
+    case 5:
+      s.scales.assign(s.harmonics.size(), {});
+      for (PartScale& scale : s.scales) {
+        scale.exponent = random() % (kMaxPartExponent + 1);
+        for (std::uint32_t& x : scale.origin) x = scale.exponent > 0 ? random() % grid : 0;
+      }
+      break;
     case 0:  // a vertex more, or another place
       if (s.loose_vertices.empty() || random() % 2) s.loose_vertices.emplace_back();
       for (std::uint32_t& x : s.loose_vertices[random() % s.loose_vertices.size()].position) x = random() % grid;

@@ -155,6 +155,7 @@ class EncoderSettings(ctypes.Structure):
         ("threads", c_uint32),
         ("run_jobs", c_void_p),
         ("run_jobs_user", c_void_p),
+        ("reach", c_double),
     ]
 
 

@@ -86,15 +86,16 @@ class CopyDecoder:
         n = self.count[triangle[k]]
         split = sum(self.count.get(triangle[other], 0) > 1 for other in ((k + 1) % 3, (k + 2) % 3))
         (l0, c0), (l1, c1) = (candidates + [(5, -1)])[:2]
-        if self.first[l0, l1, min(n, 3), split, across].decode(self.decoder):
+        if self.first[l0, l1, min(n, 2), split, across].decode(self.decoder):
             return c0
-        if c1 >= 0 and self.second[l1, min(n, 3)].decode(self.decoder):
+        if c1 >= 0 and self.second[l1].decode(self.decoder):
             return c1
-        if n == 1 or (n == 2 and c1 >= 0) or self.new.decode(self.decoder):
+        others = [copy for copy in reversed(range(n)) if copy not in (c0, c1)]
+        if not others or self.new.decode(self.decoder):
             return n
-        back = self.which.decode(self.decoder)
-        require(back < n, 75, "a copy that there is not")
-        return n - 1 - back
+        index = self.which.decode(self.decoder) if len(others) > 1 else 0
+        require(index < len(others), 75, "a copy that there is not")
+        return others[index]
 
 
 def decode_copies(

@@ -38,6 +38,8 @@ class SideInformation:
     loose_vertices: list[LooseVertex]
     loose_triangles: list[tuple[int, ...]]
     harmonics: list[int]
+    scales: list[int]
+    part_origins: list[tuple[int, int, int]]
     handles_per_harmonic: int
     fingerprint: tuple[float, float]
     order: list[int] | None
@@ -115,6 +117,20 @@ def _harmonics(decoder: RangeDecoder, header: SequenceHeader) -> list[int]:
     return harmonics
 
 
+def _scales(decoder: RangeDecoder, header: SequenceHeader, components: int) -> tuple[list[int], list]:
+    """spec.md 5.2, "Scales": s and p of each component."""
+    scales, origins = [0] * components, [(0, 0, 0)] * components
+    if not decoder.raw(1):
+        return scales, origins
+    models = UnsignedModels()
+    for component in range(components):
+        scales[component] = models.decode(decoder)
+        require(scales[component] <= 20, 76, f"a scale of {scales[component]}")
+        if scales[component]:
+            origins[component] = tuple(decoder.raw(header.position_bits) for _ in range(3))
+    return scales, origins
+
+
 def _order(decoder: RangeDecoder, header: SequenceHeader) -> list[int]:
     """spec.md 5.2, "Order"."""
     difference = SignedModels()
@@ -142,6 +158,7 @@ def parse_side_information(decoder: RangeDecoder, header: SequenceHeader, has_me
     loose_vertices = _loose_vertices(decoder, header, has_normals, has_colors)
     loose_triangles = _loose_triangles(decoder, header)
     harmonics = _harmonics(decoder, header)
+    scales, part_origins = _scales(decoder, header, len(harmonics))
     handles_per_harmonic = UnsignedModels().decode(decoder)
     fingerprint = (_raw_f32(decoder), _raw_f32(decoder))
     order = _order(decoder, header) if decoder.raw(1) else None
@@ -154,6 +171,8 @@ def parse_side_information(decoder: RangeDecoder, header: SequenceHeader, has_me
         loose_vertices,
         loose_triangles,
         harmonics,
+        scales,
+        part_origins,
         handles_per_harmonic,
         fingerprint,
         order,

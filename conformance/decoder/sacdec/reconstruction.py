@@ -166,10 +166,15 @@ class Reconstruction:
         """step / 16 * (n / n_c)^power of each component: unit_c of spec.md 6.5.1."""
         return step / 16 * (self.header.vertices / np.diff(self.mesh.components)) ** power
 
+    def _patch_scales(self) -> np.ndarray:
+        """s of the component of each patch."""
+        components = np.searchsorted(self.mesh.components, self.mesh.patches[:-1], side="right") - 1
+        return self.mesh.scales[components]
+
     def _displacement(self, coded: CodedFrame) -> list[np.ndarray]:
         """What the displacement plane adds to z of each component, [functions, 3]."""
         columns = [part.columns for part in self.components]
-        units = self._units(self.header.displacement_step, 1 / 2)
+        units = self._units(self.header.displacement_step, 1 / 2) / 2.0**self.mesh.scales
         return fields(columns, self.rows.harmonics, coded.planes[DISPLACEMENT].coefficients, units)
 
     def _at_vertices(self, coded: CodedFrame) -> np.ndarray:
@@ -177,7 +182,7 @@ class Reconstruction:
         header, planes = self.header, coded.planes
         total = np.zeros((header.vertices, 3))
         if DETAIL in planes:
-            units = header.detail_step / 16 / np.sqrt(np.diff(self.mesh.patches))
+            units = header.detail_step / 16 / np.sqrt(np.diff(self.mesh.patches)) / 2.0 ** self._patch_scales()
             vectors = [part.vectors for part in self.patches]
             total += np.concatenate(fields(vectors, self.rows.patch_harmonics, planes[DETAIL].coefficients, units))
         if CORRECTION in planes:
@@ -187,4 +192,7 @@ class Reconstruction:
 
 def first_shape(header: SequenceHeader, mesh: Mesh) -> np.ndarray:
     """M'0, spec.md 4: positions [n, 3]."""
-    return np.array(header.origin) + header.cell * mesh.grid.astype(np.float64)
+    sizes = np.diff(mesh.components)
+    finer = 2.0 ** np.repeat(mesh.scales, sizes)[:, None]
+    begin = np.repeat(mesh.part_origins, sizes, axis=0)
+    return np.array(header.origin) + header.cell * (begin + mesh.grid / finer)

@@ -42,7 +42,11 @@ def summary(clip: Clip) -> dict:
     return result
 
 
-def tolerance(segment: Segment, coordinates: np.ndarray) -> np.ndarray:
-    """How far coordinates that were rounded to binary32 may be from this decoder's: spec.md 8."""
-    exact = max(1e-6 * max(segment.first_diagonal(), segment.header.cell), 1e-12 * np.abs(coordinates).max(initial=0))
-    return exact + 2.0**-24 * np.abs(coordinates)
+def tolerance(segment: Segment, vertices: np.ndarray, coordinates: np.ndarray) -> np.ndarray:
+    """How far coordinates [.., n, 3] of these vertices [n], by their final numbers, that were rounded to binary32 may be
+    from this decoder's: spec.md 8."""
+    mesh = segment.mesh
+    components = np.searchsorted(mesh.components, mesh.vertex_of_copy[vertices], side="right") - 1
+    near = 1e-6 * max(segment.first_diagonal(), segment.header.cell) / 2.0 ** mesh.scales[components]
+    exact = np.maximum(near, 1e-12 * np.abs(coordinates).max(initial=0))
+    return exact[:, None] + 2.0**-24 * np.abs(coordinates)

@@ -18,7 +18,7 @@ class Mesh:
 
     Positions are `grid` [n, 3], integers, `triangles` [m, 3] those of vertices. What is given out are copies:
     `vertex_of_copy` has the vertex of each, `copy_triangles` the triangles of copies. Components and patches are runs of
-    vertices, from `components[i]` to `components[i + 1]` - 1. Attributes are those of copies, None where there are none.
+    vertices, from `components[i]` to `components[i + 1]` - 1; `scales` and `part_origins` [.., 3] are those of components. Attributes are those of copies, None where there are none.
     `normals` are those of copies, or, if `normal_triangles` [m, 3] is there, those that it gives the indices of for
     corners.
     """
@@ -29,6 +29,8 @@ class Mesh:
     copy_triangles: np.ndarray
     components: list[int]
     patches: list[int]
+    scales: np.ndarray
+    part_origins: np.ndarray
     normals: np.ndarray | None = None
     normal_triangles: np.ndarray | None = None
     colors: np.ndarray | None = None
@@ -224,7 +226,15 @@ def build_mesh(draco: DracoMesh, joined: Joined, side: SideInformation, patch_si
     vertex_of_copy, first, output = _number_copies(final, joined.counts)
     copy_triangles = first[joined.triangles] + joined.copies
     mesh = Mesh(
-        grid[final], number[joined.triangles], vertex_of_copy, copy_triangles, components, patches, order=side.order
+        grid[final],
+        number[joined.triangles],
+        vertex_of_copy,
+        copy_triangles,
+        components,
+        patches,
+        np.array(side.scales, np.int64),
+        np.array(side.part_origins, np.int64).reshape(-1, 3),
+        order=side.order,
     )
     begin = np.cumsum(joined.counts) - joined.counts  # the first copy of each vertex, both by the numbers of step 1
     corners = begin[joined.triangles] + joined.copies
