@@ -175,7 +175,7 @@ TEST_F(WarningsTest, PartsThatAreParkedFarAway) {
   WriteCache("far.pc2", frames);
   std::vector<std::string> encode{"encode", "far.obj", "far.pc2", "-o", "far.sac", "--harmonics", "30"};
   EXPECT_EQ(Told(encode).find(" its own size"), std::string::npos) << "each is coded by its size";
-  encode.insert(encode.end(), {"--displacement-step", "5"});
+  encode.insert(encode.end(), {"--motion-step", "10", "--displacement-step", "100"});
   const std::string told = Told(encode);
   EXPECT_NE(told.find("sac: warning: far.obj: the part of "), std::string::npos) << told;
   EXPECT_NE(told.find(" its own size (KG "), std::string::npos) << told;
