@@ -4,7 +4,6 @@
 
 #include <malloc.h>
 
-#include <algorithm>
 #include <cstdlib>
 #include <cstring>
 #include <new>
@@ -22,18 +21,22 @@ namespace {
 
 void* Allocate(std::size_t size, std::size_t alignment = 0) {
   CountedMemory& count = counted_memory;
-  if (count.until_failure == 0) {
+  long left = count.until_failure;
+  while (left > 0 && !count.until_failure.compare_exchange_weak(left, left - 1)) {
+  }
+  if (left == 0) {
     if (!count.fail_on) count.until_failure = -1;
     return nullptr;
   }
-  if (count.until_failure > 0) --count.until_failure;
   ++count.allocations;
   void* const memory = alignment > 0 ? std::aligned_alloc(alignment, (size + alignment - 1) / alignment * alignment)
                                      : __real_malloc(size > 0 ? size : 1);
   if (memory) {
     ++count.living;
-    count.bytes += malloc_usable_size(memory);
-    count.peak_bytes = std::max(count.peak_bytes, count.bytes);
+    const std::size_t bytes = count.bytes += malloc_usable_size(memory);
+    std::size_t peak = count.peak_bytes;
+    while (bytes > peak && !count.peak_bytes.compare_exchange_weak(peak, bytes)) {
+    }
   }
   return memory;
 }
