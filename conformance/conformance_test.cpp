@@ -135,13 +135,15 @@ void CheckValid(const std::filesystem::path& directory, const Json& vector) {
 
 TEST(Conformance, ValidStreamsDecode) {
   for (const auto& directory : Directories()) {
-    for (const Json& vector : ManifestOf(directory).at("valid")) CheckValid(directory, vector);
+    const Json manifest = ManifestOf(directory);
+    for (const Json& vector : manifest.at("valid")) CheckValid(directory, vector);
   }
 }
 
 TEST(Conformance, InvalidStreamsAreRefused) {
   for (const auto& directory : Directories()) {
-    for (const Json& vector : ManifestOf(directory).at("invalid")) {
+    const Json manifest = ManifestOf(directory);
+    for (const Json& vector : manifest.at("invalid")) {
       const std::string file = vector.at("file"), wanted = vector.at("class");
       const Decoding d = Decode(Read(directory / file));
       const StatusCode code = wanted == "limit"         ? StatusCode::kLimit

@@ -24,7 +24,7 @@
 #include "tests/test_directory.h"
 
 // Mesa keeps a little of what it allocates for its first context; LeakSanitizer asks for this function by its name.
-extern "C" const char* __lsan_default_suppressions() { return "leak:libOSMesa"; }
+extern "C" __attribute__((visibility("default"))) const char* __lsan_default_suppressions() { return "leak:libOSMesa"; }
 
 namespace sac {
 namespace {
