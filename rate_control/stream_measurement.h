@@ -62,7 +62,7 @@ class StreamMeasurement {
   void Compare(const Positions& original, const Positions& decoded);
 
   ShapeResidual* residual_;
-  bool beside_;
+  [[maybe_unused]] bool beside_;
 #if SAC_HAS_THREADS
   std::thread other_;
 #endif
