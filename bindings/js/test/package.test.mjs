@@ -13,7 +13,8 @@ import { packageFolder, root } from './files.mjs';
 const brotli = (file) => brotliCompressSync(readFileSync(join(packageFolder, 'dist', file)),
   { params: { [constants.BROTLI_PARAM_QUALITY]: 11, [constants.BROTLI_PARAM_LGWIN]: 24 } }).length;
 const modules = join(packageFolder, 'node_modules');
-const tool = (name, args, cwd) => execFileSync(process.execPath, [join(modules, name), ...args], { cwd, stdio: 'pipe' });
+// esbuild's is a script or, where npm ran what its package installs with, a program.
+const tool = (name, args, cwd) => execFileSync(join(modules, '.bin', name), args, { cwd, stdio: 'pipe' });
 
 const main = `
 import * as THREE from 'three';
@@ -107,7 +108,7 @@ export async function count(bytes: Uint8Array): Promise<number> {
   writeFileSync(join(project, 'tsconfig.json'), JSON.stringify({
     compilerOptions: { strict: true, noEmit: true, target: 'es2022', module: 'es2022', moduleResolution: 'bundler', types: [] },
   }));
-  tool('typescript/bin/tsc', ['-p', '.'], project);
+  tool('tsc', ['-p', '.'], project);
 });
 
 test('a page without a build', async () => {
@@ -125,7 +126,7 @@ test('<sac-player> on a page without three.js', async () => {
 
 test('esbuild', async () => {
   const project = join(folder, 'project');
-  tool('esbuild/bin/esbuild', ['main.js', '--bundle', '--format=esm', '--target=es2022', '--outfile=out/main.js'], project);
+  tool('esbuild', ['main.js', '--bundle', '--format=esm', '--target=es2022', '--outfile=out/main.js'], project);
   // It leaves addresses of files as they are: they lie beside the bundle.
   for (const file of ['worker.js', 'sac.wasm']) cpSync(join(installed, 'dist', file), join(project, 'out', file));
   writeFileSync(join(project, 'out/index.html'), html('', 'src="main.js"'));
@@ -134,7 +135,7 @@ test('esbuild', async () => {
 
 test('Vite', async () => {
   const project = join(folder, 'project');
-  tool('vite/bin/vite.js', ['build', '--base=/vite/', '--logLevel=error'], project);
+  tool('vite', ['build', '--base=/vite/', '--logLevel=error'], project);
   assert.ok(readdirSync(join(project, 'dist/assets')).some((f) => f.endsWith('.wasm')));
   await plays('/vite/');
 });
