@@ -47,7 +47,7 @@ Status Thin(const ThinOptions& options) {
                  input.name().c_str(), options.layers);
   }
   const Json json = {{"bytes_before", before}, {"bytes", after}, {"layers_dropped", thinner.layers_dropped()}};
-  std::FILE* const report = options.output == "-" ? stderr : stdout;
+  std::FILE* const report = IsStandardOutput(options.output) ? stderr : stdout;
   if (options.json) {
     std::fputs(JsonLine(json).c_str(), report);
   } else {

@@ -18,15 +18,8 @@ namespace {
 
 constexpr std::size_t kMostText = std::size_t{1} << 30;  // bytes
 
-Status ReadText(const std::string& path, std::size_t most, std::string& text) {
-  StreamInput file;
-  SAC_RETURN_IF_ERROR(file.Open(path));
-  std::span<const std::uint8_t> chunk;
-  do {
-    SAC_RETURN_IF_ERROR(file.Read(chunk));
-    text.append(chunk.begin(), chunk.end());
-    if (text.size() > most) return Status::Corrupt(path + ": larger than 1 GB");
-  } while (!chunk.empty());
+Status ReadText(const std::string& path, std::string& text) {
+  SAC_RETURN_IF_ERROR(ReadToEnd(path, text, kMostText, "larger than 1 GB"));
   const Status status = NormalizeText(text);
   return status.ok() ? status : Status(status.code(), path + ": " + status.message());
 }
@@ -72,7 +65,7 @@ struct VertexLine {
 
 Status ReadVertexLines(const std::string& path, std::vector<VertexLine>& lines) {
   std::string text;
-  SAC_RETURN_IF_ERROR(ReadText(path, kMostText, text));
+  SAC_RETURN_IF_ERROR(ReadText(path, text));
   std::string_view rest = text;
   for (std::size_t number = 1; !rest.empty(); ++number) {
     std::string_view words = TakeLine(rest);
@@ -117,7 +110,7 @@ std::string FormatWeights(const SparseComponents& components) {
 
 Status ReadWeights(const std::string& path, std::size_t count, std::vector<float>& weights) {
   std::string text;
-  SAC_RETURN_IF_ERROR(ReadText(path, kMostText, text));
+  SAC_RETURN_IF_ERROR(ReadText(path, text));
   std::string_view rest = text;
   weights.clear();
   bool skips_first = false, begun = false;

@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <span>
 #include <string>
 #include <vector>
@@ -31,5 +33,21 @@ class StreamInput {
   int fd_ = -1;
   std::vector<std::uint8_t> buffer_;
 };
+
+// Appends all of a file, or of standard input, to `out`, a container of bytes. kIoError as StreamInput; kCorrupt, with
+// the path and `too_large`, where `out` comes to have more than `most` bytes.
+template <class Bytes>
+Status ReadToEnd(const std::string& path, Bytes& out, std::size_t most = std::numeric_limits<std::size_t>::max(),
+                 const char* too_large = "") {
+  StreamInput input;
+  SAC_RETURN_IF_ERROR(input.Open(path));
+  std::span<const std::uint8_t> chunk;
+  do {
+    SAC_RETURN_IF_ERROR(input.Read(chunk));
+    out.insert(out.end(), chunk.begin(), chunk.end());
+    if (out.size() > most) return Status::Corrupt(path + ": " + too_large);
+  } while (!chunk.empty());
+  return Status::Ok();
+}
 
 }  // namespace sac

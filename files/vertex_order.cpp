@@ -1,43 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "files/vertex_order.h"
 
-#include <span>
 #include <string_view>
 
 #include "files/stream_input.h"
 #include "files/text_scan.h"
+#include "geometry/in_input_order.h"
 
 namespace sac {
-namespace {
-
-template <class T>
-std::vector<T> Reorder(const std::vector<T>& decoded, const VertexOrder& order) {
-  std::vector<T> out(decoded.size());
-  for (std::size_t v = 0; v < decoded.size(); ++v) out[order[v]] = decoded[v];
-  return out;
-}
-
-Status ReadText(const std::string& path, std::size_t most, std::string& text) {
-  StreamInput file;
-  SAC_RETURN_IF_ERROR(file.Open(path));
-  std::span<const std::uint8_t> chunk;
-  do {
-    SAC_RETURN_IF_ERROR(file.Read(chunk));
-    text.append(chunk.begin(), chunk.end());
-    if (text.size() > most) return Status::Corrupt(path + ": too large for an order map of this clip");
-  } while (!chunk.empty());
-  return Status::Ok();
-}
-
-}  // namespace
-
-Positions ToInputOrder(const Positions& decoded, const VertexOrder& order) { return Reorder(decoded, order); }
+Positions ToInputOrder(const Positions& decoded, const VertexOrder& order) { return InInputOrder(decoded, order); }
 
 Mesh ToInputOrder(const Mesh& decoded, const VertexOrder& order) {
   Mesh mesh = decoded;
-  mesh.positions = Reorder(decoded.positions, order);
-  if (decoded.normal_triangles.empty()) mesh.normals = Reorder(decoded.normals, order);
-  mesh.colors = Reorder(decoded.colors, order);
+  mesh.positions = InInputOrder(decoded.positions, order);
+  if (decoded.normal_triangles.empty()) mesh.normals = InInputOrder(decoded.normals, order);
+  mesh.colors = InInputOrder(decoded.colors, order);
   for (Triangle& triangle : mesh.triangles) {
     for (std::uint32_t& vertex : triangle) vertex = order[vertex];
   }
@@ -53,7 +30,7 @@ std::string FormatOrderMap(const VertexOrder& order) {
 Status ReadOrderMap(const std::string& path, std::size_t vertices, VertexOrder& order) {
   std::string text;
   // An index takes up to 10 digits and a line end; the rest is for comments.
-  SAC_RETURN_IF_ERROR(ReadText(path, 16 * vertices + (1 << 20), text));
+  SAC_RETURN_IF_ERROR(ReadToEnd(path, text, 16 * vertices + (1 << 20), "too large for an order map of this clip"));
   std::string_view rest = text;
   std::vector<bool> seen(vertices);
   order.clear();

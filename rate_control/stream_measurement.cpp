@@ -21,13 +21,6 @@ void StreamMeasurement::BeginSegment(const Mesh& mesh, const std::vector<std::ui
   segments_.push_back({mesh.triangles, order, !mesh.uv_triangles.empty(), !mesh.normals.empty()});
 }
 
-Positions StreamMeasurement::InInputOrder(const Positions& decoded) const {
-  const std::vector<std::uint32_t>& order = segments_[measured_].order;
-  Positions ordered(decoded.size());
-  for (std::size_t v = 0; v < order.size(); ++v) ordered[order[v]] = decoded[v];
-  return ordered;
-}
-
 void StreamMeasurement::BeginMeasuring(std::size_t index) {
   measured_ = index;
   Segment& segment = segments_[index];
@@ -40,7 +33,7 @@ void StreamMeasurement::BeginMeasuring(std::size_t index) {
   const Mesh& decoded = *decoder_.mesh();
   lost_uvs_ = lost_uvs_ || (segment.has_uvs && decoded.uv_triangles.empty());
   lost_normals_ = lost_normals_ || (segment.has_normals && decoded.normals.empty());
-  if (residual_ != nullptr) residual_->Begin(InInputOrder(decoded.positions));
+  if (residual_ != nullptr) residual_->Begin(Ordered(decoded.positions));
 }
 
 void StreamMeasurement::Compare(const Positions& original, const Positions& decoded) {
@@ -57,7 +50,7 @@ Status StreamMeasurement::Decode() {
       const Expected& expected = expected_.front();
       if (expected.segment != frame_.segment) return Status::Corrupt("a frame of another segment");
       if (!meter_ || expected.segment != measured_) BeginMeasuring(expected.segment);
-      Compare(expected.positions, InInputOrder(frame_.positions));
+      Compare(expected.positions, Ordered(frame_.positions));
       expected_.pop_front();
     }
     if (status.code() != StatusCode::kNeedMoreData) return status;

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "codec/decode/run_jobs.h"
+#include "geometry/in_input_order.h"
 #include "metrics/error_meter.h"
 #include "rate_control/shape_residual.h"
 #include "sac/clip_encoder.h"
@@ -56,8 +57,8 @@ class StreamMeasurement {
   // Waits for the other thread. Until then it has all members from decoder_ on.
   void Wait();
   Status Decode();
-  // `decoded` in the order of the input of the current segment.
-  Positions InInputOrder(const Positions& decoded) const;
+  // Those of the current segment, in the order of its input.
+  Positions Ordered(const Positions& decoded) const { return InInputOrder(decoded, segments_[measured_].order); }
   void BeginMeasuring(std::size_t segment);
   void Compare(const Positions& original, const Positions& decoded);
 

@@ -54,17 +54,6 @@ Status ReadClip(const Arguments& arguments, Clip& clip) {
   }
 }
 
-Status ReadBytes(const std::string& path, std::vector<std::uint8_t>& bytes) {
-  StreamInput file;
-  SAC_RETURN_IF_ERROR(file.Open(path));
-  std::span<const std::uint8_t> chunk;
-  do {
-    SAC_RETURN_IF_ERROR(file.Read(chunk));
-    bytes.insert(bytes.end(), chunk.begin(), chunk.end());
-  } while (!chunk.empty());
-  return Status::Ok();
-}
-
 Status WriteBytes(const std::string& path, const void* bytes, std::size_t size) {
   OutputFile file;
   SAC_RETURN_IF_ERROR(file.Open(path));
@@ -88,10 +77,10 @@ Status Encode(const Arguments& arguments, const Peer& peer) {
 
 Status Decode(const Arguments& arguments, const Peer& peer) {
   std::vector<std::uint8_t> bytes, map;
-  SAC_RETURN_IF_ERROR(ReadBytes(arguments.stream, bytes));
+  SAC_RETURN_IF_ERROR(ReadToEnd(arguments.stream, bytes));
   Clip clip;
   SAC_RETURN_IF_ERROR(peer.decode(bytes, clip));
-  SAC_RETURN_IF_ERROR(ReadBytes(arguments.map, map));
+  SAC_RETURN_IF_ERROR(ReadToEnd(arguments.map, map));
   std::vector<std::uint32_t> order(map.size() / sizeof(std::uint32_t));
   std::copy(map.begin(), map.end(), reinterpret_cast<std::uint8_t*>(order.data()));
   const std::size_t vertices = order.empty() ? 0 : *std::max_element(order.begin(), order.end()) + std::size_t{1};
