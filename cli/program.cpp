@@ -109,4 +109,13 @@ std::string ThisProgram() {
   return std::filesystem::read_symlink("/proc/self/exe", error).string();
 }
 
+std::filesystem::path FindBesideProgram(std::span<const char* const> places) {
+  const std::filesystem::path folder = std::filesystem::path(ThisProgram()).parent_path();
+  for (const char* place : places) {
+    std::error_code error;
+    if (std::filesystem::is_regular_file(folder / place, error)) return folder / place;
+  }
+  return {};
+}
+
 }  // namespace sac

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,5 +20,8 @@ int RunProgram(int argc, char** argv, const std::function<std::vector<Command>(C
 
 // The path of the program that is running; empty when the system does not tell.
 std::string ThisProgram();
+
+// The first of `places`, paths from the folder of the program, that is a file; empty when none is.
+std::filesystem::path FindBesideProgram(std::span<const char* const> places);
 
 }  // namespace sac

@@ -13,7 +13,6 @@
 #include <filesystem>
 #include <iterator>
 #include <memory>
-#include <span>
 #include <string>
 #include <system_error>
 #include <vector>
@@ -21,7 +20,6 @@
 #include "cli/commands.h"
 #include "cli/number_option.h"
 #include "cli/program.h"
-#include "files/stream_input.h"
 #include "format/packet.h"
 
 #ifdef SAC_HAS_HTTPLIB
@@ -44,17 +42,17 @@ struct ViewOptions {
 
 constexpr const char* kHost = "127.0.0.1";
 // Where an installation has the page, and where scripts/web makes it for a build in build/PRESET.
-constexpr const char* kPlaces[] = {"../share/sac/page", "../../web/demo"};
+constexpr const char* kPlaces[] = {"../share/sac/page/index.html", "../../web/demo/index.html"};
 
-// A file that is read in pieces, whatever becomes of its name.
-class ServedFile {
+// A stream that is read in pieces, whatever becomes of its name.
+class ServedStream {
  public:
-  ServedFile() = default;
-  ~ServedFile() {
+  ServedStream() = default;
+  ~ServedStream() {
     if (fd_ >= 0) close(fd_);
   }
-  ServedFile(const ServedFile&) = delete;
-  ServedFile& operator=(const ServedFile&) = delete;
+  ServedStream(const ServedStream&) = delete;
+  ServedStream& operator=(const ServedStream&) = delete;
 
   Status Open(const std::string& path) {
     fd_ = open(path.c_str(), O_RDONLY | O_CLOEXEC);
@@ -62,7 +60,11 @@ class ServedFile {
     if (fd_ < 0 || fstat(fd_, &about) != 0) return Status::IoError(path + ": cannot be read");
     if (!S_ISREG(about.st_mode)) return Status::IoError(path + ": no file, whose parts a page can ask for");
     size_ = static_cast<std::size_t>(about.st_size);
-    return Status::Ok();
+    // Before a browser is opened for it.
+    std::uint8_t begin[sizeof(kMagic)];
+    const ssize_t got = pread(fd_, begin, sizeof(begin), 0);
+    const bool is_stream = got == sizeof(begin) && std::equal(std::begin(begin), std::end(begin), std::begin(kMagic));
+    return is_stream ? Status::Ok() : Status::Corrupt(path + ": not a .sac stream");
   }
   std::size_t size() const { return size_; }
   // Gives `sink` some of the bytes from `offset` on, `length` at most.
@@ -77,32 +79,17 @@ class ServedFile {
   std::size_t size_ = 0;
 };
 
+// The folder of the page.
 Status FindPage(const std::string& given, fs::path& page) {
-  std::vector<fs::path> places;
-  if (!given.empty()) places.emplace_back(given);
+  std::error_code error;
   if (given.empty()) {
-    for (const char* place : kPlaces) places.push_back(fs::path(ThisProgram()).parent_path() / place);
+    page = FindBesideProgram(kPlaces).parent_path();
+    return page.empty() ? Status::IoError("view: the page is not installed beside sac; scripts/web build makes it")
+                        : Status::Ok();
   }
-  for (const fs::path& place : places) {
-    std::error_code error;
-    if (!fs::is_regular_file(place / "index.html", error)) continue;
-    page = place;
-    return Status::Ok();
-  }
-  return Status::IoError(given.empty() ? "view: the page is not installed beside sac; scripts/web build makes it"
-                                       : given + ": has no index.html");
-}
-
-// Bytes that a file begins with say whether it is a stream, before a browser is opened for it.
-Status CheckStream(const std::string& path) {
-  StreamInput input;
-  SAC_RETURN_IF_ERROR(input.Open(path));
-  std::span<const std::uint8_t> chunk;
-  SAC_RETURN_IF_ERROR(input.Read(chunk));
-  if (chunk.size() < std::size(kMagic) || !std::equal(std::begin(kMagic), std::end(kMagic), chunk.begin())) {
-    return Status::Corrupt(path + ": not a .sac stream");
-  }
-  return Status::Ok();
+  page = given;
+  return fs::is_regular_file(page / "index.html", error) ? Status::Ok()
+                                                         : Status::IoError(given + ": has no index.html");
 }
 
 // A name as part of an address: RFC 3986, 2.1.
@@ -151,9 +138,8 @@ httplib::Server::HandlerResponse RefuseOtherHosts(const httplib::Request& reques
 Status Serve(const ViewOptions& options) {
   fs::path page;
   SAC_RETURN_IF_ERROR(FindPage(options.page, page));
-  ServedFile stream;
+  ServedStream stream;
   SAC_RETURN_IF_ERROR(stream.Open(options.input));
-  SAC_RETURN_IF_ERROR(CheckStream(options.input));
 
   httplib::Server server;
   server.set_pre_routing_handler(RefuseOtherHosts);
