@@ -31,14 +31,20 @@ std::function<bool(std::uint32_t)> ProgressOf(const ClipEncoding& encoding, std:
 // The segment number `segment` of a clip, at which the clip is.
 class SegmentReader : public ClipReader {
  public:
-  SegmentReader(ClipReader& clip, std::uint32_t segment) : clip_(clip), segment_(segment), first_(clip.first_frame()) {}
+  // A clip at a segment but the first has just come to its begin.
+  SegmentReader(ClipReader& clip, std::uint32_t segment)
+      : clip_(clip), segment_(segment), first_(clip.first_frame()), at_begin_(segment > 0) {}
 
   const Mesh& mesh() const override { return clip_.mesh(); }
   FrameRate rate() const override { return clip_.rate(); }
   std::string name() const override { return clip_.name(); }
   std::string name_of(std::uint32_t frame) const override { return clip_.name_of(first_ + frame); }
-  Status Next(Positions& frame, bool& end) override { return clip_.Next(frame, end); }
+  Status Next(Positions& frame, bool& end) override {
+    at_begin_ = false;
+    return clip_.Next(frame, end);
+  }
   Status Rewind() override {
+    if (at_begin_) return Status::Ok();
     SAC_RETURN_IF_ERROR(clip_.Rewind());
     for (std::uint32_t s = 0; s < segment_; ++s) {
       bool end = false;
@@ -52,6 +58,7 @@ class SegmentReader : public ClipReader {
   ClipReader& clip_;
   const std::uint32_t segment_;
   const std::uint32_t first_;  // the number of its first frame in the clip
+  bool at_begin_;              // nothing of it has been read
 };
 
 // The encoding of a clip while its settings and the shapes of its I-frames are chosen.
